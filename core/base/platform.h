@@ -82,6 +82,37 @@ void ignore_broken_pipes();
 /// cannot be started or crashes.
 std::optional<int> run_quietly(const std::vector<std::string>& words);
 
+/// Memory that another process shares under a key (System V). It stays until the program ends. Null
+/// if there is none of at least this size, and on systems without such memory.
+void* shared_memory(uint32_t key, size_t bytes);
+
+/// A program that runs beside this one, whose standard input and output are pipes to it. Its
+/// standard error is that of this program.
+class Companion {
+public:
+    /// Starts a program, found as a shell does. Empty if it cannot be started, and on Windows.
+    static std::optional<Companion> start(const std::vector<std::string>& words);
+
+    Companion(Companion&& other) noexcept;
+    Companion& operator=(Companion&& other) noexcept;
+    /// Closes its input and ends it.
+    ~Companion();
+
+    /// Writes to its input without waiting. False if it does not take all of it.
+    bool write(const std::string& text);
+    /// What it has written since the last call. Does not wait.
+    std::string read();
+    /// Whether its output is still open.
+    bool is_open() const { return is_open_; }
+
+private:
+    Companion() = default;
+    void end();
+
+    int process_ = -1, input_ = -1, output_ = -1;
+    bool is_open_ = false;
+};
+
 // --- terminals --------------------------------------------------------------------------------
 
 bool is_terminal(std::FILE* stream);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -16,6 +17,7 @@
 #include <spawn.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
+#include <sys/shm.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -188,6 +190,83 @@ std::optional<int> run_quietly(const std::vector<std::string>& words) {
     if (failed != 0 || ::waitpid(child, &status, 0) != child || !WIFEXITED(status))
         return std::nullopt;
     return WEXITSTATUS(status);
+}
+
+void* shared_memory(uint32_t key, size_t bytes) {
+    const int id = ::shmget(static_cast<key_t>(key), bytes, 0);
+    if (id < 0) return nullptr;
+    void* const memory = ::shmat(id, nullptr, 0);
+    return memory == reinterpret_cast<void*>(-1) ? nullptr : memory;
+}
+
+std::optional<Companion> Companion::start(const std::vector<std::string>& words) {
+    std::array<int, 2> input{}, output{};
+    if (::pipe2(input.data(), O_CLOEXEC) != 0) return {};
+    if (::pipe2(output.data(), O_CLOEXEC) != 0) {
+        ::close(input[0]);
+        ::close(input[1]);
+        return {};
+    }
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    ::posix_spawn_file_actions_init(&files);
+    ::posix_spawn_file_actions_adddup2(&files, input[0], STDIN_FILENO);
+    ::posix_spawn_file_actions_adddup2(&files, output[1], STDOUT_FILENO);
+    pid_t process = -1;
+    const int failed =
+        ::posix_spawnp(&process, arguments[0], &files, nullptr, arguments.data(), environ);
+    ::posix_spawn_file_actions_destroy(&files);
+    ::close(input[0]);
+    ::close(output[1]);
+    for (const int end : {input[1], output[0]})
+        ::fcntl(end, F_SETFL, ::fcntl(end, F_GETFL) | O_NONBLOCK);
+    Companion started;
+    started.process_ = failed == 0 ? process : -1;
+    started.input_ = input[1];
+    started.output_ = output[0];
+    started.is_open_ = failed == 0;
+    if (failed != 0) return {};
+    return started;
+}
+
+Companion::Companion(Companion&& other) noexcept { *this = std::move(other); }
+
+Companion& Companion::operator=(Companion&& other) noexcept {
+    std::swap(process_, other.process_);
+    std::swap(input_, other.input_);
+    std::swap(output_, other.output_);
+    std::swap(is_open_, other.is_open_);
+    return *this;
+}
+
+Companion::~Companion() { end(); }
+
+void Companion::end() {
+    if (input_ >= 0) ::close(input_);
+    if (output_ >= 0) ::close(output_);
+    if (process_ > 0) {
+        ::kill(process_, SIGTERM);
+        ::waitpid(process_, nullptr, 0);
+    }
+}
+
+bool Companion::write(const std::string& text) {
+    return is_open_
+           && ::write(input_, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+}
+
+std::string Companion::read() {
+    std::string text;
+    std::array<char, 4096> block{};
+    while (is_open_) {
+        const ssize_t count = ::read(output_, block.data(), block.size());
+        if (count < 0 && (errno == EAGAIN || errno == EINTR)) break;
+        is_open_ = count > 0;
+        if (count > 0) text.append(block.data(), static_cast<size_t>(count));
+    }
+    return text;
 }
 
 bool is_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }

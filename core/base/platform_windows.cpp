@@ -315,6 +315,15 @@ std::wstring on_path(const std::wstring& name) {
 
 } // namespace
 
+void* shared_memory(uint32_t, size_t) { return nullptr; }
+
+std::optional<Companion> Companion::start(const std::vector<std::string>&) { return {}; }
+Companion::Companion(Companion&&) noexcept {}
+Companion& Companion::operator=(Companion&&) noexcept { return *this; }
+Companion::~Companion() = default;
+bool Companion::write(const std::string&) { return false; }
+std::string Companion::read() { return {}; }
+
 std::optional<int> run_quietly(const std::vector<std::string>& words) {
     std::wstring line;
     for (const std::string& word : words) line += (line.empty() ? L"" : L" ") + quoted(wide(word));

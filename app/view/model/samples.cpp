@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/base/shipped_files.h"
 #include "core/base/file_reads.h"
 #include "core/base/platform.h"
 
@@ -28,22 +29,10 @@ constexpr ShippedSample shipped_samples[] = {
     {"clamped_plate.nc", "clamped_plate.toml", "Plate, corrected", "3 axes; no mistake"},
 };
 
-bool has_samples(const fs::path& folder) {
-    return core::is_file(folder / "programs" / shipped_samples[0].program);
-}
-
 } // namespace
 
 fs::path samples_folder() {
-    const fs::path program = core::platform::program_path().parent_path();
-    if (program.empty()) return {};
-    for (const fs::path& folder :
-         {program.parent_path() / "share/feeler", program / "share/feeler"})
-        if (has_samples(folder)) return folder;
-    fs::path above = program;
-    for (int i = 0; i < 5; ++i, above = above.parent_path())
-        if (has_samples(above / "assets")) return above / "assets";
-    return {};
+    return shipped_files_with(fs::path("programs") / shipped_samples[0].program);
 }
 
 std::vector<Sample> samples_in(const fs::path& folder) {

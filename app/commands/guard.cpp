@@ -1,0 +1,273 @@
+#include "app/guard/guard.h"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/base/shipped_files.h"
+#include "app/base/text.h"
+#include "app/commands/commands.h"
+#include "app/commands/output.h"
+#include "app/commands/progress.h"
+#include "app/commands/suggestion.h"
+#include "app/guard/control_state.h"
+#include "app/guard/motion_log.h"
+#include "app/setup/ini_file.h"
+#include "app/setup/linuxcnc_kinematics.h"
+#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
+#include "core/base/file_reads.h"
+#include "core/base/platform.h"
+#include "core/base/units.h"
+
+namespace app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto pause = std::chrono::microseconds(100);
+
+struct GuardOptions {
+    std::string setup, ini, log, status;
+    double tolerance = 0.01;
+    double wait = 60.0;
+};
+
+/// The set-up of a machine that is running: complete, since nothing is inferred from a program.
+core::Result<SetupFile> complete_setup(const std::string& path) {
+    FEELER_TRY(SetupFile setup, read_setup(path, {}));
+    const auto lacks = [&](const std::string& what) {
+        return core::fail_file(path, "the guard needs a set-up that states " + what);
+    };
+    if (setup.needs_stock || setup.is_partial) return lacks("the stock");
+    if (setup.setup.tools.empty()) return lacks("the tools with their sizes");
+    if (setup.infers_frame || setup.offsets_set.empty())
+        return lacks("the work offsets in machine coordinates");
+    if (!setup.offsets_of_bodies.empty())
+        return lacks("the place of its bodies: they stand in a work offset that it does not state");
+    return setup;
+}
+
+/// The ini file, if its machine is one that the guard can follow.
+core::Result<IniFile> known_ini(const std::string& path) {
+    FEELER_TRY(IniFile ini, read_ini(path));
+    if (is_known_kinematics(ini.kinematics))
+        return core::fail_file(path, fmt::format("the guard does not follow the kinematics {}: it "
+                                                 "needs a machine whose axes are its joints",
+                                                 ini.kinematics));
+    return ini;
+}
+
+/// Waits for LinuxCNC to load feeler_tp.
+core::Result<feeler_ring*> awaited_ring(double seconds) {
+    const auto end = Clock::now() + std::chrono::duration<double>(seconds); // clock: gives up
+    while (!is_interrupted()) {
+        auto* const ring = static_cast<feeler_ring*>(
+            core::platform::shared_memory(FEELER_RING_KEY, sizeof(feeler_ring)));
+        const std::string why = ring ? why_unknown(*ring) : "feeler_tp is not loaded";
+        if (why.empty()) return ring;
+        if (Clock::now() > end) // clock: as above
+            return core::fail(core::ErrorCode::unsupported,
+                              why + ": LinuxCNC must run with TPMOD = feeler_tp under [TRAJ]");
+        std::this_thread::sleep_for(std::chrono::milliseconds(100)); // clock: polls
+    }
+    return core::fail(core::ErrorCode::unsupported, "interrupted before LinuxCNC was there");
+}
+
+/// LinuxCNC's status, from a program that asks for it.
+class ControlStatus {
+public:
+    static core::Result<ControlStatus> start(const std::string& script) {
+        const std::filesystem::path shipped = "linuxcnc/feeler_status.py";
+        const std::filesystem::path folder = shipped_files_with(shipped);
+        const std::string path = !script.empty()   ? script
+                                 : !folder.empty() ? (folder / shipped).string()
+                                                   : std::string();
+        if (path.empty())
+            return core::fail(core::ErrorCode::io,
+                              "feeler_status.py is not there: name it with --status");
+        auto companion = core::platform::Companion::start({"python3", path});
+        if (!companion)
+            return core::fail(core::ErrorCode::unsupported, "python3 cannot be started");
+        return ControlStatus(*std::move(companion));
+    }
+
+    /// Takes in what the status program has written.
+    void look() {
+        text_ += companion_.read();
+        for (size_t end = text_.find('\n'); end != std::string::npos; end = text_.find('\n')) {
+            if (auto state = read_control_state(text_.substr(0, end))) {
+                state_ = *state;
+                is_fresh_ = true;
+            }
+            text_.erase(0, end + 1);
+        }
+    }
+    /// What is known from now on must be newer than now.
+    void ask_anew() {
+        is_fresh_ = false;
+        companion_.write("?\n");
+    }
+    const std::optional<ControlState>& state() const { return state_; }
+    bool is_fresh() const { return is_fresh_; }
+    bool is_open() const { return companion_.is_open(); }
+    void say(const std::string& text) { companion_.write("say " + text + "\n"); }
+
+private:
+    explicit ControlStatus(core::platform::Companion companion)
+        : companion_(std::move(companion)) {}
+
+    core::platform::Companion companion_;
+    std::string text_;
+    std::optional<ControlState> state_;
+    bool is_fresh_ = false;
+};
+
+/// Runs the guard until LinuxCNC ends or the user interrupts.
+class GuardRun {
+public:
+    GuardRun(const GuardOptions& options, const SetupFile& setup, feeler_ring& ring,
+             ControlStatus status, double unit, double most_override)
+        : options_(options),
+          setup_(setup),
+          ring_(ring),
+          status_(std::move(status)),
+          guard_(setup.setup, ring, unit, most_override),
+          unit_(unit) {}
+
+    core::Result<void> open_log();
+    void run();
+    uint64_t refused() const { return guard_.refused(); }
+    uint64_t permitted() const { return guard_.permitted(); }
+
+private:
+    static constexpr const char* awaits_status = "the status of LinuxCNC is awaited.";
+
+    std::string objection();
+    void tell(const std::string& text);
+
+    const GuardOptions& options_;
+    const SetupFile& setup_;
+    feeler_ring& ring_;
+    ControlStatus status_;
+    Guard guard_;
+    std::optional<MotionLog> log_;
+    double unit_ = 1.0;
+    bool was_idle_ = true, said_disk_ = false;
+};
+
+core::Result<void> GuardRun::open_log() {
+    if (options_.log.empty()) return {};
+    FEELER_TRY(log_, MotionLog::begin(options_.log, setup_));
+    return {};
+}
+
+void GuardRun::tell(const std::string& text) {
+    std::fputs(printable(text + "\n").c_str(), stderr);
+    // LinuxCNC's messages hold 255 characters.
+    constexpr size_t most = 250;
+    for (std::string rest = text; !rest.empty();) {
+        size_t end = rest.size() <= most ? rest.size() : rest.rfind(' ', most);
+        if (end == std::string::npos || end == 0) end = most;
+        status_.say(rest.substr(0, end));
+        rest.erase(0, end + 1);
+    }
+}
+
+std::string GuardRun::objection() {
+    status_.look();
+    if (!status_.is_open())
+        return "the status of LinuxCNC is not known (feeler_status.py has ended).";
+    // Before the first motion after a pause, as after touching off, only a fresh status counts.
+    if (was_idle_) {
+        was_idle_ = false;
+        status_.ask_anew();
+    }
+    if (!status_.is_fresh() || !status_.state()) return GuardRun::awaits_status;
+    return difference(setup_, *status_.state(), unit_, options_.tolerance);
+}
+
+void GuardRun::run() {
+    guard_.objection = [this] { return objection(); };
+    guard_.tell = [this](const std::string& text) { tell(text); };
+    guard_.after_motion = [this](const feeler_segment& motion) {
+        if (log_) log_->add(motion);
+    };
+    guard_.after_refusal = [this](const feeler_segment& motion, const LiveAnswer& answer) {
+        if (log_) log_->add_refused(motion, answer.reason);
+    };
+    const uint64_t session = ring_.session;
+    int idle = 0;
+    while (!is_interrupted() && ring_.magic == FEELER_RING_MAGIC && ring_.session == session) {
+        if (guard_.step()) {
+            idle = 0;
+            continue;
+        }
+        if (!guard_.has_motion() && ++idle > 100) was_idle_ = true;
+        status_.look();
+        if (log_ && !log_->is_whole() && !std::exchange(said_disk_, true))
+            tell("Feeler: the log cannot be written any more: " + options_.log);
+        std::this_thread::sleep_for(pause); // clock: polls
+    }
+}
+
+core::Result<ExitCode> guard_machine(const GuardOptions& options) {
+    FEELER_TRY(const SetupFile setup, complete_setup(options.setup));
+    FEELER_TRY(const IniFile ini, known_ini(options.ini));
+    const double unit = ini.machine_unit == gcode::LengthUnit::inch ? 25.4 : 1.0;
+    const auto stated = ini.values.find("_ini[display]max_feed_override");
+    const double most_override = stated == ini.values.end() ? 1.0 : std::max(1.0, stated->second);
+    FEELER_TRY(feeler_ring* const ring, awaited_ring(options.wait));
+    FEELER_TRY(ControlStatus status, ControlStatus::start(options.status));
+    GuardRun run(options, setup, *ring, std::move(status), unit, most_override);
+    if (auto opened = run.open_log(); !opened) return tl::unexpected(opened.error());
+    print_note("watching LinuxCNC\n");
+    run.run();
+    print_note(fmt::format("{} motions permitted, {} refused\n", run.permitted(), run.refused()));
+    return run.refused() == 0 ? ExitCode::clear : ExitCode::findings;
+}
+
+ExitCode guard(const GuardOptions& options) {
+    stop_on_interrupt();
+    const auto done = guard_machine(options);
+    return done ? *done : failed(done.error());
+}
+
+constexpr const char* guard_examples = R"(
+An assistant, never a safety function. In the ini file of LinuxCNC:
+  [TRAJ]
+  TPMOD = feeler_tp
+  [APPLICATIONS]
+  APP = feeler guard --setup /home/me/mill.toml --ini /home/me/mill.ini)";
+
+} // namespace
+
+void add_guard(CLI::App& cli, ExitCode& exit_code) {
+    const auto options = std::make_shared<GuardOptions>();
+    CLI::App& command = *cli.add_subcommand(
+        "guard", "Watch LinuxCNC while it runs, and hold it before a motion that is not clear");
+    add_path(command, "--setup", options->setup, "The set-up of the machine")->required();
+    add_path(command, "--ini", options->ini, "The ini file of LinuxCNC")->required();
+    command
+        .add_option("--tolerance", options->tolerance,
+                    "How far the control's work offset and tool length may differ from the set-up, "
+                    "mm or degrees")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    add_path(command, "--log", options->log,
+             "Write what the machine did as a program, which feeler view shows");
+    add_path(command, "--status", options->status,
+             "The program that asks LinuxCNC for its status, instead of the one that is installed");
+    command.add_option("--wait", options->wait, "How long to wait for LinuxCNC, seconds")
+        ->check(CLI::Range(0.0, 86400.0))
+        ->capture_default_str();
+    command.footer(guard_examples);
+    command.callback([options, &exit_code] { exit_code = guard(*options); });
+}
+
+} // namespace app

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "app/guard/live_check.h"
+
+namespace app {
+
+/// What feeler guard does with a ring: reads motions in order, checks them, and permits them.
+///
+/// After a refusal nothing more is permitted until the control drops its motions, as it does when
+/// the operator aborts. Then only motions that lose no clearance are, until the violation is
+/// cleared (feeler-tp.clear).
+class Guard {
+public:
+    /// The ring must outlive the object. It is taken over where an earlier guard has left it: the
+    /// motions that wait are checked. `unit`: mm per unit of the machine's lengths.
+    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double most_override);
+
+    /// Why no motion may be permitted now, such as a work offset that differs from the set-up;
+    /// empty if there is no reason. Asked before each motion, which waits as long as there is one.
+    std::function<std::string()> objection;
+    /// For the operator: what holds the machine, and that it is over.
+    std::function<void(const std::string&)> tell;
+    /// After each motion that was refused, in mm.
+    std::function<void(const feeler_segment&, const LiveAnswer&)> after_refusal;
+    /// After each motion that was made, in mm, as LiveCheck::after_motion.
+    std::function<void(const feeler_segment&)> after_motion;
+
+    /// Checks the next motion. False if there was none, or if none may be permitted now; then it
+    /// has followed some of the cuts that were made.
+    bool step();
+
+    /// Whether a motion waits to be checked.
+    bool has_motion() const { return feeler_load(&ring_.written) > ring_.read; }
+
+    uint64_t permitted() const { return permitted_; }
+    uint64_t refused() const { return refused_; }
+
+private:
+    void follow_operator();
+    bool may_permit();
+    void judge(const feeler_segment& motion);
+
+    feeler_ring& ring_;
+    LiveCheck check_;
+    double unit_ = 1.0;
+    bool is_latched_ = false;
+    uint64_t cleared_ = 0;
+    std::string reason_, told_; // why nothing is permitted now; and what the operator knows of it
+    int64_t since_ = 0;         // milliseconds
+    uint64_t permitted_ = 0, refused_ = 0;
+};
+
+/// Why a ring is of another kind than this program knows; empty if it is not.
+std::string why_unknown(const feeler_ring& ring);
+
+} // namespace app

@@ -1,0 +1,397 @@
+#include "app/guard/live_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/math.h"
+
+namespace app {
+namespace {
+
+constexpr double same_place = 1e-6;        // mm or degrees
+constexpr double retreat_tolerance = 0.01; // mm
+constexpr double full_turn = 1e-6;         // an arc that ends this close to its start, radians
+
+core::AxisValues values_of(const double (&numbers)[core::axis_count]) {
+    core::AxisValues values;
+    std::copy(std::begin(numbers), std::end(numbers), values.begin());
+    return values;
+}
+
+bool is_near(const core::AxisValues& a, const core::AxisValues& b) {
+    for (size_t i = 0; i < core::axis_count; ++i)
+        if (!(std::abs(a[i] - b[i]) <= same_place)) return false;
+    return true;
+}
+
+/// The position of the axes that the machine has.
+core::AxisPosition position_of(const core::AxisValues& values, const core::Machine& machine) {
+    core::AxisPosition position;
+    for (size_t i = 0; i < core::axis_count; ++i)
+        if (machine.axes[i].present) position[i] = values[i];
+    return position;
+}
+
+core::AxisValues values_of(const core::AxisPosition& position) {
+    core::AxisValues values{};
+    for (size_t i = 0; i < core::axis_count; ++i) values[i] = position[i].value_or(0.0);
+    return values;
+}
+
+core::Vec3 vector_of(const double (&numbers)[3]) { return {numbers[0], numbers[1], numbers[2]}; }
+
+core::Vec3 point_of(const core::AxisValues& values) { return {values[0], values[1], values[2]}; }
+
+/// The main axis along which a vector points: 0 X, 1 Y, 2 Z; empty if it points between them.
+std::optional<int> main_axis(const core::Vec3& normal) {
+    const double length = glm::length(normal);
+    for (int i = 0; i < 3; ++i)
+        if (length > 0.0 && std::abs(normal[i]) >= (1.0 - 1e-12) * length) return i;
+    return {};
+}
+
+/// The angle from one point to another about an axis through a centre, as a control counts it: more
+/// than 0 and up to a full turn counterclockwise seen from the positive axis.
+double turn_about(const core::Vec3& from, const core::Vec3& to, const core::Vec3& centre,
+                  int normal) {
+    const int u = (normal + 1) % 3, v = (normal + 2) % 3;
+    const core::Vec3 a = from - centre, b = to - centre;
+    const double angle = core::atan2(a[u] * b[v] - a[v] * b[u], a[u] * b[u] + a[v] * b[v]);
+    return angle > full_turn ? angle : angle + 2.0 * std::numbers::pi;
+}
+
+double distance_from_axis(const core::Vec3& point, const core::Vec3& centre, int normal) {
+    core::Vec3 arm = point - centre;
+    arm[normal] = 0.0;
+    return glm::length(arm);
+}
+
+/// The path of an arc to its end or, if it was stopped, to that place. `normal`: its axis, which
+/// the normal of the motion may point along or against.
+core::ArcPath arc_of(const feeler_segment& motion, int normal, const core::AxisValues& to) {
+    const core::Vec3 centre = vector_of(motion.centre);
+    const core::Vec3 from = point_of(values_of(motion.from)), end = point_of(to);
+    const double whole = 2.0 * std::numbers::pi;
+    // Counted about the motion's own normal, or clockwise about it: LinuxCNC's pmCircleInit.
+    const bool is_reversed = motion.normal[normal] < 0.0, is_clockwise = motion.turns < 0;
+    double angle = turn_about(from, end, centre, normal);
+    if (is_reversed != is_clockwise) angle = angle < whole - full_turn ? whole - angle : whole;
+    angle += whole * (is_clockwise ? -1 - motion.turns : motion.turns);
+    return {normal, centre, is_reversed != is_clockwise ? -angle : angle};
+}
+
+double distance_to_segment(const core::Vec3& point, const core::Vec3& a, const core::Vec3& b) {
+    const core::Vec3 along = b - a;
+    const double square = glm::dot(along, along);
+    const double t = square > 0.0 ? std::clamp(glm::dot(point - a, along) / square, 0.0, 1.0) : 0.0;
+    return glm::length(point - (a + t * along));
+}
+
+/// How far LinuxCNC may leave the path at the end of a feed that is blended without a tolerance: it
+/// begins the next motion while this one brakes, with half the acceleration, from its full feed.
+double most_blend(const feeler_segment& motion, double most_override) {
+    const double feed = std::min(motion.feed * most_override, motion.most_feed);
+    return motion.acceleration > 0.0 ? feed * feed / motion.acceleration : core::infinity;
+}
+
+core::PathModeChange path_mode_of(const feeler_segment& motion, double most_override) {
+    core::PathModeChange mode;
+    mode.blending = motion.blending == FEELER_EXACT_STOP   ? core::Blending::exact_stop
+                    : motion.blending == FEELER_EXACT_PATH ? core::Blending::exact_path
+                                                           : core::Blending::continuous;
+    if (mode.blending != core::Blending::continuous) return mode;
+    if (motion.tolerance > 0.0) {
+        mode.tolerance = mode.rapid_tolerance = motion.tolerance;
+        return mode;
+    }
+    mode.tolerance = motion.purpose == FEELER_RAPID ? 0.0 : most_blend(motion, most_override);
+    mode.rapids_keep_speed = true;
+    return mode;
+}
+
+core::SpindleChange spindle_of(const feeler_segment& motion) {
+    core::SpindleChange spindle;
+    spindle.direction = motion.turns_on == 1   ? core::SpindleDirection::clockwise
+                        : motion.turns_on == 2 ? core::SpindleDirection::counterclockwise
+                                               : core::SpindleDirection::stopped;
+    if (motion.turns_on != 0) spindle.speed = std::max(std::abs(motion.speed), 1.0);
+    return spindle;
+}
+
+core::Motion line_of(const feeler_segment& motion, const core::Machine& machine) {
+    core::Motion line;
+    line.kind = motion.purpose == FEELER_RAPID || motion.purpose == FEELER_TOOL_CHANGE
+                        || motion.purpose == FEELER_INDEXER
+                    ? core::MotionKind::rapid
+                    : core::MotionKind::feed;
+    line.from = position_of(values_of(motion.from), machine);
+    line.to = position_of(values_of(motion.to), machine);
+    line.style = core::RapidStyle::straight;
+    line.stops_at_contact = motion.purpose == FEELER_PROBE;
+    if (line.kind == core::MotionKind::feed) line.feed = 60.0 * motion.feed;
+    return line;
+}
+
+/// What made a motion not clear, for the operator: the first error, else the first warning.
+const core::Finding* worst_finding(const core::BlockResult& result) {
+    const core::Finding* worst = nullptr;
+    for (const core::Finding& finding : result.findings)
+        if (finding.severity != core::Severity::off
+            && (!worst || finding.severity > worst->severity))
+            worst = &finding;
+    return worst;
+}
+
+bool has_error(const core::BlockResult& result) {
+    return std::any_of(result.findings.begin(), result.findings.end(), [](const auto& finding) {
+        return finding.severity == core::Severity::error;
+    });
+}
+
+bool is_clear(const core::BlockResult& result) {
+    return result.checked && result.verdict == core::Verdict::clear && !has_error(result);
+}
+
+std::string tool_text(int32_t tool) {
+    return tool == 0 ? std::string("no tool") : fmt::format("tool {}", tool);
+}
+
+} // namespace
+
+feeler_segment in_mm(feeler_segment motion, double unit) {
+    const auto scale = [&](double& length) { length *= unit; };
+    for (double(*values)[core::axis_count] :
+         {&motion.from, &motion.to, &motion.stopped_at, &motion.tool_offset})
+        for (size_t i = 0; i < core::axis_count; ++i)
+            if (!core::is_rotary(i)) scale((*values)[i]);
+    for (double& value : motion.centre) scale(value);
+    scale(motion.feed);
+    scale(motion.most_feed);
+    scale(motion.acceleration);
+    scale(motion.tolerance);
+    return motion;
+}
+
+LiveCheck::LiveCheck(const core::Setup& setup, double most_override)
+    : setup_(setup), thorough_(setup), most_override_(most_override) {
+    setup_.detail = core::Detail::verdict;
+    thorough_.detail = core::Detail::every_pair;
+}
+
+/// Runs events as a block. Without measuring, they are taken to be clear.
+core::BlockResult LiveCheck::run(const core::Setup& setup, std::vector<core::Event> events,
+                                 core::SimulatorState& state, bool measures) {
+    const core::Judgement clear;
+    return core::run_block(setup,
+                           {.block = core::BlockIndex{block_++},
+                            .events = events,
+                            .judgement = measures ? nullptr : &clear},
+                           state);
+}
+
+/// The tool, the spindle and the path mode, where the motion has others than the state, and the
+/// motion.
+std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
+                                              const core::SimulatorState& state) const {
+    std::vector<core::Event> events;
+    const std::optional<core::ToolNumber> tool =
+        motion.tool == 0 && !setup_.tools.contains(core::ToolNumber{0})
+            ? std::nullopt
+            : std::optional(core::ToolNumber{motion.tool});
+    if (!state.tool_known || state.tool != tool) events.emplace_back(core::ToolChange{tool});
+    const core::SpindleChange spindle = spindle_of(motion);
+    if (spindle.direction != state.spindle.direction || spindle.speed != state.spindle.speed)
+        events.emplace_back(spindle);
+    events.emplace_back(path_mode_of(motion, most_override_));
+
+    core::Motion there = line_of(motion, setup_.machine);
+    if (motion.shape == FEELER_ARC) {
+        const int normal = *main_axis(vector_of(motion.normal));
+        const core::ArcPath arc = arc_of(motion, normal, values_of(motion.to));
+        there.kind = core::MotionKind::arc;
+        there.feed = 60.0 * motion.feed;
+        there.arc = arc;
+        // A spiral deviates from the arc about its centre by the difference of its radii.
+        there.path_error =
+            std::abs(distance_from_axis(point_of(values_of(motion.from)), arc.centre, normal)
+                     - distance_from_axis(point_of(values_of(motion.to)), arc.centre, normal));
+    }
+    events.emplace_back(there);
+    if (motion.shape == FEELER_TAP) {
+        std::swap(there.from, there.to);
+        events.emplace_back(there);
+    }
+    return events;
+}
+
+void LiveCheck::make(const feeler_segment& motion) {
+    run(setup_, events_of(motion, *made_), *made_, false);
+    if (after_motion) after_motion(motion);
+}
+
+/// Follows the cut of a motion that was stopped on its way.
+void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& stopped_at) {
+    feeler_segment part = motion;
+    std::copy(stopped_at.begin(), stopped_at.end(), std::begin(part.to));
+    const core::Vec3 from = point_of(values_of(motion.from)), to = point_of(values_of(motion.to));
+    const core::Vec3 there = point_of(stopped_at);
+    std::vector<core::Event> events = events_of(part, *made_);
+    auto& path =
+        std::get<core::Motion>(events[events.size() - (motion.shape == FEELER_TAP ? 2 : 1)]);
+    path.stops_at_contact = false;
+    // The planner may have left the path where it blends into the next motion.
+    if (motion.shape == FEELER_ARC) {
+        const int normal = path.arc->normal;
+        path.path_error += std::abs(distance_from_axis(there, path.arc->centre, normal)
+                                    - distance_from_axis(from, path.arc->centre, normal));
+        const double whole = arc_of(motion, normal, values_of(motion.to)).angle;
+        // How many turns were made is not known: at least the part of the first.
+        const double turn = 2.0 * std::numbers::pi;
+        double angle = turn_about(from, there, path.arc->centre, normal);
+        if (whole < 0.0) angle -= turn;
+        if (std::abs(angle) > std::abs(whole)) angle = 0.0; // it had hardly begun
+        path.arc->angle = angle;
+    } else {
+        path.path_error += distance_to_segment(there, from, to);
+    }
+    run(setup_, std::move(events), *made_, false);
+    if (after_motion) after_motion(part);
+}
+
+bool LiveCheck::catch_up(uint64_t begun, size_t most) {
+    for (; most > 0 && !waiting_.empty() && waiting_.front().number < begun; --most) {
+        make(waiting_.front());
+        waiting_.pop_front();
+    }
+    return !waiting_.empty() && waiting_.front().number < begun;
+}
+
+/// Brings the state to the place where the motion begins.
+core::Result<void> LiveCheck::place(const feeler_segment& motion) {
+    const core::AxisValues from = values_of(motion.from);
+    const core::AxisPosition position = position_of(from, setup_.machine);
+    if (!ahead_) {
+        FEELER_TRY(core::SimulatorState state, core::start_of_run(setup_, position));
+        state.is_assumed = {};
+        made_ = state;
+        ahead_ = std::move(state);
+        return {};
+    }
+    if (motion.follows + 1 != motion.number) {
+        // The control has dropped what it had queued.
+        catch_up(motion.follows + (motion.follows_part != 0 ? 0 : 1), waiting_.size());
+        const core::AxisValues stopped_at = values_of(motion.stopped_at);
+        if (motion.follows_part != 0 && !waiting_.empty()
+            && waiting_.front().number == motion.follows)
+            make_part(waiting_.front(), stopped_at);
+        waiting_.clear();
+        ahead_ = *made_;
+        is_refused_ = false;
+    }
+    if (is_near(values_of(ahead_->position), values_of(position)) && ahead_->spread.none())
+        return {};
+    // The machine was at rest and was then moved in another way, such as by hand.
+    catch_up(motion.number, waiting_.size());
+    for (core::SimulatorState* state : {&*ahead_, &*made_}) {
+        state->position = position;
+        state->spread = {};
+        state->corners.last = {};
+        state->memory.bounds.clear();
+    }
+    return {};
+}
+
+/// Why a motion cannot be checked; or empty.
+std::string LiveCheck::objection(const feeler_segment& motion) const {
+    const auto is_finite = [](double value) { return std::isfinite(value); };
+    if (!std::all_of(std::begin(motion.from), std::end(motion.from), is_finite)
+        || !std::all_of(std::begin(motion.to), std::end(motion.to), is_finite))
+        return "Its position is not a number.";
+    if (motion.tool < 0)
+        return "The tool in the spindle is not known: feeler-tp.tool-number is not connected.";
+    if (motion.tool > 0 && !setup_.tools.contains(core::ToolNumber{motion.tool}))
+        return fmt::format("The set-up does not describe {}.", tool_text(motion.tool));
+    for (size_t i = 0; i < core::axis_count; ++i)
+        if (!setup_.machine.axes[i].present
+            && (std::abs(motion.to[i]) > same_place || std::abs(motion.from[i]) > same_place))
+            return fmt::format("Axis {} is not at 0, and the set-up has no such axis.",
+                               core::axis_letters[i]);
+    if (motion.shape == FEELER_ARC && !main_axis(vector_of(motion.normal)))
+        return "Its arc lies in no main plane.";
+    return {};
+}
+
+LiveAnswer LiveCheck::refused(std::string reason, std::string cure) {
+    is_refused_ = true;
+    return {.reason = std::move(reason), .cure = std::move(cure)};
+}
+
+/// Why a motion may not be judged at all, after the state is where it begins; or empty.
+std::string LiveCheck::begin(const feeler_segment& motion) {
+    // It would begin where the motion that was refused ends.
+    if (is_refused_ && motion.follows + 1 == motion.number)
+        return "A motion before it was refused.";
+    if (auto placed = place(motion); !placed) return placed.error().message;
+    return objection(motion);
+}
+
+/// Forgets a motion that was tried in `ahead_`.
+void LiveCheck::go_back() {
+    ahead_ = *made_;
+    for (const feeler_segment& earlier : waiting_)
+        run(setup_, events_of(earlier, *ahead_), *ahead_, false);
+}
+
+LiveAnswer LiveCheck::judge(const feeler_segment& motion) {
+    if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
+    const core::BlockResult result = run(setup_, events_of(motion, *ahead_), *ahead_, true);
+    if (is_clear(result)) {
+        waiting_.push_back(motion);
+        return {.may_move = true};
+    }
+    go_back();
+    const core::Finding* const finding = worst_finding(result);
+    if (!finding) return refused("Its clearance cannot be proven.");
+    return refused(finding->message, finding->cure);
+}
+
+LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
+    if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
+    feeler_segment rest = motion;
+    rest.shape = FEELER_LINE;
+    rest.purpose = FEELER_RAPID;
+    std::copy(std::begin(rest.from), std::end(rest.from), std::begin(rest.to));
+    core::SimulatorState now = *ahead_;
+    const core::BlockResult before = run(thorough_, events_of(rest, now), now, true);
+    const core::BlockResult result = run(thorough_, events_of(motion, *ahead_), *ahead_, true);
+    // Bounds of a motion include what the control may round off; those at rest do not.
+    const double slack =
+        retreat_tolerance + (motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0);
+    const auto comes_nearer = [&](const core::PairClearance& pair) {
+        const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
+        const auto known = std::find_if(before.pairs.begin(), before.pairs.end(),
+                                        [&](const auto& one) { return one.pair == pair.pair; });
+        const double at_rest = known == before.pairs.end() ? core::infinity : known->lower;
+        return pair.lower < limit && pair.lower < at_rest - slack;
+    };
+    const auto nearer = std::find_if(result.pairs.begin(), result.pairs.end(), comes_nearer);
+    if (result.checked && result.verdict != core::Verdict::collision
+        && nearer == result.pairs.end()) {
+        waiting_.push_back(motion);
+        return {.may_move = true};
+    }
+    go_back();
+    const std::string why = nearer == result.pairs.end()
+                                ? std::string("It is not proven to be free of a collision.")
+                                : fmt::format("It brings {} and {} nearer to each other.",
+                                              core::part_name(setup_, nearer->pair),
+                                              core::body_name(setup_, nearer->pair));
+    return refused(why, "After a violation, only motions that lose no clearance may be made until "
+                        "feeler-tp.clear is set.");
+}
+
+} // namespace app

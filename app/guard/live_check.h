@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "assets/linuxcnc/feeler_tp/feeler_ring.h"
+#include "core/base/result.h"
+#include "core/sim/run/simulator.h"
+#include "core/sim/setup.h"
+
+namespace app {
+
+/// The motion with lengths in mm, of a machine whose unit is this many mm.
+feeler_segment in_mm(feeler_segment motion, double unit);
+
+/// What the guard says about a motion.
+struct LiveAnswer {
+    bool may_move = false;
+    std::string reason = {}; // why it may not: one or two sentences for the operator
+    std::string cure = {};   // how to go on; may be empty
+};
+
+/// Checks the motions of a running machine one by one, before they are made, against fixtures,
+/// machine bodies and the stock as it is cut. Bodies, bounds and rules are those of a check of the
+/// same motions in a program.
+///
+/// Motions are those of the ring (feeler_ring.h), in mm and degrees, in their order.
+class LiveCheck {
+public:
+    /// `most_override`: the largest feed override, 1 for 100 %.
+    explicit LiveCheck(const core::Setup& setup, double most_override = 1.0);
+
+    /// Checks the next motion. It may move only if it is proven clear and breaks no rule. After one
+    /// that may not, none may until the control has dropped it: what follows would start elsewhere.
+    LiveAnswer judge(const feeler_segment& motion);
+
+    /// As judge(), after a violation that the operator has not cleared: the motion may move if it
+    /// loses no clearance. All along it, no pair of bodies is nearer to each other than at its
+    /// start by more than 0.01 mm, unless it stays 10 mm apart and twice its allowance. It may move
+    /// so even if it is not clear, but not in a collision.
+    LiveAnswer judge_retreat(const feeler_segment& motion);
+
+    /// Whether the motions that the control has queued cannot move any more, after a refusal.
+    bool is_refused() const { return is_refused_; }
+
+    /// Called with each motion that was made, once it is known that it was. One that was stopped on
+    /// its way ends where it was stopped.
+    std::function<void(const feeler_segment&)> after_motion;
+
+    /// Follows the cuts of motions before number `begun`, which have been made; at most `most` at a
+    /// time. To be called when there is nothing to judge. Whether some are left.
+    bool catch_up(uint64_t begun, size_t most);
+
+private:
+    std::string begin(const feeler_segment& motion);
+    void go_back();
+    core::Result<void> place(const feeler_segment& motion);
+    void make(const feeler_segment& motion);
+    void make_part(const feeler_segment& motion, const core::AxisValues& stopped_at);
+    std::string objection(const feeler_segment& motion) const;
+    std::vector<core::Event> events_of(const feeler_segment& motion,
+                                       const core::SimulatorState& state) const;
+    core::BlockResult run(const core::Setup& setup, std::vector<core::Event> events,
+                          core::SimulatorState& state, bool measures);
+    LiveAnswer refused(std::string reason, std::string cure = {});
+
+    core::Setup setup_;    // measures only what a verdict needs
+    core::Setup thorough_; // measures every pair
+    double most_override_ = 1.0;
+    std::optional<core::SimulatorState> ahead_; // after all motions that may move
+    std::optional<core::SimulatorState> made_;  // after those that have been made
+    std::deque<feeler_segment> waiting_;        // what is in `ahead_` and not in `made_`
+    bool is_refused_ = false;                   // until the control drops what it has queued
+    uint32_t block_ = 0;
+};
+
+} // namespace app

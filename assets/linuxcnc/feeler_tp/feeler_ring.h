@@ -1,0 +1,102 @@
+/* The shared memory between feeler_tp, which wraps LinuxCNC's trajectory planner, and feeler guard.
+ *
+ * SPDX-License-Identifier: 0BSD
+ *
+ * Permission to use, copy, modify, and/or distribute this file for any purpose with or without fee
+ * is hereby granted. THE FILE IS PROVIDED "AS IS" AND THE AUTHOR DISCLAIMS ALL WARRANTIES WITH
+ * REGARD TO THIS FILE, INCLUDING ALL IMPLIED WARRANTIES OF MERCHANTABILITY AND FITNESS. IN NO EVENT
+ * SHALL THE AUTHOR BE LIABLE FOR ANY SPECIAL, DIRECT, INDIRECT, OR CONSEQUENTIAL DAMAGES OR ANY
+ * DAMAGES WHATSOEVER RESULTING FROM LOSS OF USE, DATA OR PROFITS, WHETHER IN AN ACTION OF CONTRACT,
+ * NEGLIGENCE OR OTHER TORTIOUS ACTION, ARISING OUT OF OR IN CONNECTION WITH THE USE OR PERFORMANCE
+ * OF THIS FILE.
+ *
+ * The planner's side writes each motion that LinuxCNC queues into the ring and gives it a number.
+ * The guard reads the motions in order. The planner gets a motion once the guard has permitted its
+ * number, and not before: what it never got it cannot move.
+ *
+ * Each field has one writer. Counters are read with acquire and written with release order
+ * (feeler_load, feeler_store); a segment is complete before `written` counts it, and is not
+ * overwritten before `read` counts it.
+ *
+ * Lengths and positions are in the units of the machine (LINEAR_UNITS of its ini file), angles in
+ * degrees. Positions are machine coordinates of X Y Z A B C U V W, as the axes move: with work
+ * offsets and tool offsets in them.
+ */
+#ifndef FEELER_RING_H
+#define FEELER_RING_H
+
+#include <stdint.h>
+
+#define FEELER_RING_KEY 0x46656c72 /* of the shared memory (System V) */
+#define FEELER_RING_MAGIC 0x46656c72u
+#define FEELER_RING_VERSION 1u
+#define FEELER_RING_SEGMENTS 4096u
+
+/* Shape of a path. A tap moves to `to` and back to `from`. */
+enum feeler_shape { FEELER_LINE = 1, FEELER_ARC = 2, FEELER_TAP = 3 };
+
+/* What a motion is for: LinuxCNC's own numbers. */
+enum feeler_purpose {
+    FEELER_RAPID = 1,
+    FEELER_FEED = 2,
+    FEELER_CURVE = 3,
+    FEELER_TOOL_CHANGE = 4,
+    FEELER_PROBE = 5,
+    FEELER_INDEXER = 6
+};
+
+/* How a motion may pass into the next one. */
+enum feeler_blending { FEELER_EXACT_PATH = 0, FEELER_EXACT_STOP = 1, FEELER_BLENDED = 2 };
+
+struct feeler_segment {
+    uint64_t number;     /* 1, 2, 3 ... */
+    uint64_t follows;        /* the motion that was made before it; after an abort an earlier one */
+    uint32_t follows_part;   /* 1: the abort ended that motion on its way */
+    double stopped_at[9];    /* then: where */
+    uint32_t shape, purpose, blending;
+    int32_t line;      /* of the program */
+    int32_t tool;      /* in the spindle; 0: none; -1: feeler-tp.tool-number is not connected */
+    int32_t offset;    /* work offset in use: 540 for G54, 593 for G59.3 */
+    int32_t turns;     /* of an arc: full turns before its end; negative: clockwise */
+    uint32_t turns_on; /* the spindle: 0 does not turn, 1 clockwise, 2 counterclockwise */
+    double speed;      /* of the spindle, as commanded, 1/min; negative: counterclockwise */
+    double feed;       /* as programmed, units per second */
+    double most_feed;  /* of which overrides make no more */
+    double acceleration; /* units per second squared, at most */
+    double tolerance;  /* of a blend; 0: none is stated */
+    double from[9], to[9];
+    double centre[3], normal[3]; /* of an arc */
+    double tool_offset[9];
+};
+
+struct feeler_ring {
+    uint32_t magic, version;
+    uint32_t bytes;    /* of this struct */
+    uint32_t segments; /* FEELER_RING_SEGMENTS */
+    uint64_t session;  /* another one each time LinuxCNC starts */
+
+    /* written by feeler_tp */
+    uint64_t written;   /* number of the last motion in the ring */
+    uint64_t released;  /* number of the last motion that the planner got */
+    uint64_t executing; /* number of the motion that is being made; 0: the axes are at rest */
+    uint64_t made;      /* all motions up to this number that were released were made */
+    uint64_t dropped;   /* motions up to this number that were not released are gone */
+    uint64_t cleared;   /* how often the operator cleared a violation (feeler-tp.clear) */
+    uint64_t external;  /* 1: an external offset (eoffset) is in use, so nothing is released */
+    uint64_t failed;    /* number of a motion that the planner refused; 0: none */
+    uint64_t reserved[8];
+
+    /* written by the guard */
+    uint64_t read;      /* number of the last motion that was read */
+    uint64_t permitted; /* the planner may have all motions up to this number */
+    uint64_t alive;     /* counts up at least ten times a second */
+    uint64_t latched;   /* 1: a violation was found and has not been cleared */
+    uint64_t reserved_too[8];
+
+    struct feeler_segment segment[FEELER_RING_SEGMENTS]; /* number n at n % FEELER_RING_SEGMENTS */
+};
+
+#define feeler_load(counter) __atomic_load_n(counter, __ATOMIC_ACQUIRE)
+#define feeler_store(counter, value) __atomic_store_n(counter, value, __ATOMIC_RELEASE)
+
+#endif
