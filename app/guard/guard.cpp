@@ -84,7 +84,7 @@ bool Guard::step() {
 }
 
 void Guard::judge(const feeler_segment& motion) {
-    const bool follows_refusal = check_.is_refused() && motion.follows + 1 == motion.number;
+    const bool follows_refusal = check_.is_refused() && !is_after_drop(motion);
     const LiveAnswer answer = is_latched_ ? check_.judge_retreat(motion) : check_.judge(motion);
     if (answer.may_move) {
         ++permitted_;

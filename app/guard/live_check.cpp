@@ -162,6 +162,10 @@ std::string tool_text(int32_t tool) {
 
 } // namespace
 
+bool is_after_drop(const feeler_segment& motion) {
+    return motion.follows_part != 0 || motion.follows + 1 != motion.number;
+}
+
 feeler_segment in_mm(feeler_segment motion, double unit) {
     const auto scale = [&](double& length) { length *= unit; };
     for (double(*values)[core::axis_count] :
@@ -281,8 +285,7 @@ core::Result<void> LiveCheck::place(const feeler_segment& motion) {
         ahead_ = std::move(state);
         return {};
     }
-    if (motion.follows + 1 != motion.number) {
-        // The control has dropped what it had queued.
+    if (is_after_drop(motion)) {
         catch_up(motion.follows + (motion.follows_part != 0 ? 0 : 1), waiting_.size());
         const core::AxisValues stopped_at = values_of(motion.stopped_at);
         if (motion.follows_part != 0 && !waiting_.empty()
@@ -333,8 +336,7 @@ LiveAnswer LiveCheck::refused(std::string reason, std::string cure) {
 /// Why a motion may not be judged at all, after the state is where it begins; or empty.
 std::string LiveCheck::begin(const feeler_segment& motion) {
     // It would begin where the motion that was refused ends.
-    if (is_refused_ && motion.follows + 1 == motion.number)
-        return "A motion before it was refused.";
+    if (is_refused_ && !is_after_drop(motion)) return "A motion before it was refused.";
     if (auto placed = place(motion); !placed) return placed.error().message;
     return objection(motion);
 }

@@ -17,6 +17,10 @@ namespace app {
 /// The motion with lengths in mm, of a machine whose unit is this many mm.
 feeler_segment in_mm(feeler_segment motion, double unit);
 
+/// Whether the control has dropped motions before this one, so that it does not begin where the one
+/// with the number before it would end.
+bool is_after_drop(const feeler_segment& motion);
+
 /// What the guard says about a motion.
 struct LiveAnswer {
     bool may_move = false;

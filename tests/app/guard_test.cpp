@@ -1,0 +1,588 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/check/check_job.h"
+#include "app/check/check_run.h"
+#include "app/guard/control_state.h"
+#include "app/guard/guard.h"
+#include "app/guard/motion_log.h"
+#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
+#include "core/base/file_reads.h"
+#include "tests/app/checked.h"
+#include "tests/support/scoped_folder.h"
+
+namespace app_test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// A block of aluminium of 100 x 60 x 20 in the middle of G54, a clamp beside it, an end mill of
+/// 10 mm that is 100 mm long. G54 is 200 below the gauge line at home, so the tip is at machine
+/// Z-100 at home and at Z100 of G54.
+const std::string setup_text = R"(mesh_size = 0.5
+[program]
+dialect = "linuxcnc"
+start = { X = 0, Y = 0, Z = 0 }
+[[machine.axis]]
+name = "X"
+kind = "linear"
+side = "tool"
+parent = "base"
+direction = [1, 0, 0]
+rapid = 6000
+acceleration = 1000
+[[machine.axis]]
+name = "Y"
+kind = "linear"
+side = "tool"
+parent = "X"
+direction = [0, 1, 0]
+rapid = 6000
+acceleration = 1000
+[[machine.axis]]
+name = "Z"
+kind = "linear"
+side = "tool"
+parent = "Y"
+direction = [0, 0, 1]
+rapid = 6000
+acceleration = 1000
+[offsets]
+G54 = { X = 0, Y = 0, Z = -200 }
+[stock]
+box = [[-50, -30, -20], [50, 30, 0]]
+[[fixture]]
+name = "clamp"
+box = [[60, -40, -20], [80, 40, 30]]
+[[tool]]
+number = 1
+shape = "flat"
+diameter = 10
+flute_length = 30
+stick_out = 100
+[[tool]]
+number = 2
+shape = "flat"
+diameter = 6
+flute_length = 20
+stick_out = 60
+)";
+
+constexpr double tip = 100.0 - 200.0; // machine Z of the gauge line when tool 1 is at Z0 of G54
+
+app::SetupFile setup_of(const std::string& text) {
+    auto setup = app::read_setup_text(text, "mill.toml", {});
+    if (!setup) throw std::runtime_error(setup.error().message);
+    return *std::move(setup);
+}
+
+/// Plays LinuxCNC's part in a ring: numbers motions, moves as far as it is permitted, and stops.
+class Machine {
+public:
+    Machine() {
+        ring->magic = FEELER_RING_MAGIC;
+        ring->version = FEELER_RING_VERSION;
+        ring->bytes = sizeof *ring;
+        ring->segments = FEELER_RING_SEGMENTS;
+        next.tool = 1;
+        next.turns_on = 1;
+        next.speed = 1000.0;
+        next.blending = FEELER_EXACT_STOP;
+        next.feed = 10.0;
+        next.most_feed = next.acceleration = 1000.0;
+    }
+
+    /// Queues a line to X, Y and Z of the tip of tool 1 in G54.
+    uint64_t line(double x, double y, double z, uint32_t purpose = FEELER_FEED) {
+        feeler_segment motion = next;
+        motion.shape = FEELER_LINE;
+        motion.purpose = purpose;
+        motion.to[0] = x, motion.to[1] = y, motion.to[2] = z + tip;
+        return queue(motion);
+    }
+    uint64_t rapid(double x, double y, double z) { return line(x, y, z, FEELER_RAPID); }
+
+    uint64_t queue(feeler_segment motion) {
+        const uint64_t number = ring->written + 1;
+        motion.number = number;
+        motion.follows = follows.value_or(number - 1);
+        motion.follows_part = follows_part ? 1 : 0;
+        std::copy(std::begin(stopped_at), std::end(stopped_at), std::begin(motion.stopped_at));
+        std::copy(std::begin(goal), std::end(goal), std::begin(motion.from));
+        motion.line = static_cast<int32_t>(number);
+        ring->segment[number % FEELER_RING_SEGMENTS] = motion;
+        if (motion.shape != FEELER_TAP)
+            std::copy(std::begin(motion.to), std::end(motion.to), std::begin(goal));
+        follows.reset();
+        follows_part = false;
+        feeler_store(&ring->written, number);
+        return number;
+    }
+
+    /// Makes all motions that are permitted.
+    void move() {
+        ring->released = std::min(ring->permitted, ring->written);
+        ring->made = ring->released;
+    }
+
+    /// The operator aborts while motion `during` is on its way at a place of the tip.
+    void abort(uint64_t during, double x, double y, double z) {
+        ring->released = std::min(ring->permitted, ring->written);
+        ring->made = during - 1;
+        ring->dropped = ring->written;
+        follows = during;
+        follows_part = true;
+        const double at[] = {x, y, z + tip};
+        std::copy(std::begin(at), std::end(at), std::begin(stopped_at));
+        std::copy(std::begin(stopped_at), std::end(stopped_at), std::begin(goal));
+    }
+
+    /// The operator aborts while the machine waits for a permit.
+    void abort_at_rest() {
+        move();
+        ring->dropped = ring->written;
+        follows = ring->released;
+        const feeler_segment& last = ring->segment[ring->released % FEELER_RING_SEGMENTS];
+        std::copy(std::begin(last.to), std::end(last.to), std::begin(goal));
+    }
+
+    /// The machine is moved by hand, to a place of the tip.
+    void jog(double x, double y, double z) { goal[0] = x, goal[1] = y, goal[2] = z + tip; }
+
+    std::unique_ptr<feeler_ring> ring = std::make_unique<feeler_ring>();
+    feeler_segment next{}; // what the next motion has besides its path
+    double goal[9] = {};
+    double stopped_at[9] = {};
+    std::optional<uint64_t> follows;
+    bool follows_part = false;
+};
+
+class GuardedMachine : public ::testing::Test {
+protected:
+    GuardedMachine() { listen(guard_); }
+
+    void listen(app::Guard& guard) {
+        guard.tell = [this](const std::string& text) { told_.push_back(text); };
+        guard.after_motion = [this](const feeler_segment& motion) { made_.push_back(motion); };
+    }
+    void check_all(app::Guard& guard) {
+        while (guard.has_motion() && guard.step()) {
+        }
+    }
+    uint64_t permitted() {
+        check_all(guard_);
+        return machine_.ring->permitted;
+    }
+    void catch_up() {
+        for (int i = 0; i < 100; ++i) guard_.step();
+    }
+
+    app::SetupFile setup_ = setup_of(setup_text);
+    Machine machine_;
+    app::Guard guard_{setup_.setup, *machine_.ring, 1.0, 1.0};
+    std::vector<std::string> told_;
+    std::vector<feeler_segment> made_;
+};
+
+TEST_F(GuardedMachine, PermitsWhatIsClear) {
+    machine_.rapid(-60, 0, 30);
+    machine_.line(-60, 0, -2);
+    const uint64_t last = machine_.line(40, 0, -2);
+    EXPECT_EQ(permitted(), last);
+    EXPECT_TRUE(told_.empty());
+    EXPECT_EQ(machine_.ring->read, last);
+}
+
+TEST_F(GuardedMachine, PermitsNothingFromAViolationOn) {
+    machine_.rapid(-60, 0, 30);
+    const uint64_t safe = machine_.rapid(50, 0, 20);
+    machine_.rapid(54, 0, 20); // 1 mm from the clamp, whose minimum is 2
+    machine_.rapid(-60, 0, 20);
+    EXPECT_EQ(permitted(), safe);
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_THAT(told_[0], AllOf(HasSubstr("line 3"), HasSubstr("clamp"), HasSubstr("Abort")));
+    EXPECT_EQ(machine_.ring->latched, 1U);
+    EXPECT_EQ(machine_.ring->read, 4U); // so the ring does not fill up
+}
+
+/// The clearance of 2 mm itself is enough, as in a check.
+TEST_F(GuardedMachine, PermitsTheMinimumClearance) {
+    machine_.rapid(0, 0, 30);
+    const uint64_t last = machine_.rapid(53, 0, 20);
+    EXPECT_EQ(permitted(), last);
+}
+
+TEST_F(GuardedMachine, TakesOnlyWhatWasMadeForCut) {
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -5);
+    const uint64_t cut = machine_.line(54, 0, -5);
+    machine_.rapid(54, 0, 5);
+    machine_.rapid(54, 0, -5);
+    EXPECT_EQ(permitted(), cut - 1); // it would be too near to the clamp
+    machine_.abort_at_rest();
+
+    machine_.ring->cleared = 1;
+    const uint64_t again = machine_.line(40, 0, -5);
+    EXPECT_EQ(permitted(), again);
+    machine_.abort(again, 0, 0, -5);
+    const uint64_t back = machine_.rapid(-60, 0, -5); // along what was cut
+    EXPECT_EQ(permitted(), back);
+    machine_.move();
+    machine_.rapid(5, 0, -5); // the flutes reach to X10, and material begins at X5
+    EXPECT_EQ(permitted(), back);
+    ASSERT_FALSE(told_.empty());
+    EXPECT_THAT(told_.back(), HasSubstr("stock"));
+}
+
+/// Motions that were permitted ahead of an abort are not taken for made, whatever was refused
+/// behind them.
+TEST_F(GuardedMachine, ForgetsWhatWasPermittedAndNotMade) {
+    const uint64_t first = machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -5);
+    const uint64_t cut = machine_.line(50, 0, -5);
+    machine_.rapid(58, 0, -5); // into the clamp
+    machine_.rapid(-60, 0, -5);
+    EXPECT_EQ(permitted(), cut);
+    machine_.ring->released = cut;
+    machine_.ring->made = first;
+    catch_up();
+    machine_.abort(first + 1, -60, 0, 10);
+    machine_.ring->cleared = 1;
+
+    const uint64_t down = machine_.rapid(-60, 0, -5);
+    EXPECT_EQ(permitted(), down);
+    machine_.move();
+    machine_.rapid(50, 0, -5); // through the stock, which was not cut
+    EXPECT_EQ(permitted(), down);
+    EXPECT_THAT(told_.back(), HasSubstr("stock"));
+    catch_up();
+    ASSERT_EQ(made_.size(), 3U); // two whole ones, and the second one up to Z10 before that
+    EXPECT_DOUBLE_EQ(made_[1].to[2], 10 + tip);
+}
+
+TEST_F(GuardedMachine, FollowsMotionsByHand) {
+    machine_.rapid(-60, 0, 30);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.move();
+    machine_.jog(50, 0, 20);
+    const uint64_t back = machine_.rapid(-60, 0, 20);
+    EXPECT_EQ(permitted(), back);
+    machine_.move();
+    machine_.jog(55, 0, 20); // through the minimum clearance of the clamp
+    machine_.rapid(56, 0, 20);
+    EXPECT_EQ(permitted(), back);
+}
+
+TEST_F(GuardedMachine, AllowsOnlyRetreatsAfterAViolation) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(54.5, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.abort_at_rest();
+    machine_.jog(54.5, 0, 20); // by hand into the minimum clearance
+    const uint64_t away = machine_.rapid(50, 0, 20);
+    EXPECT_EQ(permitted(), away);
+    machine_.move();
+    machine_.rapid(52, 0, 20); // clear, but nearer
+    EXPECT_EQ(permitted(), away);
+    EXPECT_THAT(told_.back(), HasSubstr("clamp"));
+    machine_.abort_at_rest();
+
+    feeler_store(&machine_.ring->cleared, uint64_t{1});
+    const uint64_t nearer = machine_.rapid(52, 0, 20);
+    EXPECT_EQ(permitted(), nearer);
+    EXPECT_EQ(machine_.ring->latched, 0U);
+}
+
+TEST_F(GuardedMachine, NeverRetreatsIntoACollision) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(60, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.abort_at_rest();
+    machine_.jog(58, 0, 20); // the flutes are in the clamp
+    machine_.rapid(70, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+}
+
+TEST_F(GuardedMachine, RefusesWhatItCannotCheck) {
+    const auto refusal_of = [&](const std::function<void(feeler_segment&)>& change) {
+        feeler_segment motion = machine_.next;
+        motion.shape = FEELER_LINE;
+        motion.purpose = FEELER_RAPID;
+        motion.to[0] = 10.0;
+        change(motion);
+        machine_.queue(motion);
+        const uint64_t before = machine_.ring->permitted;
+        EXPECT_EQ(permitted(), before);
+        machine_.abort_at_rest();
+        return told_.empty() ? std::string() : told_.back();
+    };
+    EXPECT_THAT(refusal_of([](auto& motion) { motion.tool = -1; }), HasSubstr("tool-number"));
+    EXPECT_THAT(refusal_of([](auto& motion) { motion.tool = 7; }), HasSubstr("tool 7"));
+    EXPECT_THAT(refusal_of([](auto& motion) { motion.to[3] = 1.0; }), HasSubstr("Axis A"));
+    EXPECT_THAT(
+        refusal_of([](auto& motion) { motion.to[1] = std::numeric_limits<double>::quiet_NaN(); }),
+        HasSubstr("not a number"));
+    EXPECT_THAT(refusal_of([](auto& motion) {
+                    motion.shape = FEELER_ARC;
+                    motion.normal[1] = motion.normal[2] = 1.0;
+                }),
+                HasSubstr("main plane"));
+}
+
+TEST_F(GuardedMachine, RefusesAFeedWithoutTheSpindle) {
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -2);
+    machine_.next.turns_on = 0;
+    machine_.next.speed = 0.0;
+    machine_.line(0, 0, -2);
+    EXPECT_EQ(permitted(), 2U);
+    EXPECT_THAT(told_.back(), HasSubstr("spindle"));
+}
+
+/// A corner that the control may round is measured with what it may round off.
+TEST_F(GuardedMachine, CountsRoundedCorners) {
+    machine_.next.blending = FEELER_BLENDED;
+    machine_.next.tolerance = 1.0;
+    machine_.rapid(0, 0, 30);
+    machine_.line(0, 0, 20);
+    machine_.line(52.5, 0, 20); // 2.5 from the clamp, or 1.5
+    EXPECT_EQ(permitted(), 2U);
+    machine_.abort_at_rest();
+    machine_.ring->cleared = 1;
+    machine_.next.tolerance = 0.1;
+    const uint64_t last = machine_.line(52.5, 0, 20);
+    EXPECT_EQ(permitted(), last);
+    machine_.move();
+    // Without a tolerance: as far as feed and acceleration demand, here 30 * 30 / 1000 mm.
+    machine_.next.tolerance = 0.0;
+    machine_.next.feed = 30.0;
+    machine_.line(52.5, 5, 20);
+    EXPECT_EQ(permitted(), last);
+}
+
+TEST_F(GuardedMachine, WaitsWhileThereIsAnObjection) {
+    std::string why = "G54 X differs.";
+    guard_.objection = [&] { return why; };
+    machine_.rapid(0, 0, 30);
+    EXPECT_FALSE(guard_.step());
+    EXPECT_EQ(machine_.ring->permitted, 0U);
+    EXPECT_EQ(machine_.ring->read, 0U);
+    why.clear();
+    EXPECT_EQ(permitted(), 1U);
+}
+
+/// An earlier guard may have read motions that it did not permit.
+TEST_F(GuardedMachine, TakesOverFromAGuardThatWasKilled) {
+    machine_.rapid(-60, 0, 30);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.move();
+    machine_.rapid(-60, 0, -5);
+    machine_.ring->read = 2;
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    listen(other);
+    check_all(other);
+    EXPECT_EQ(machine_.ring->permitted, 2U);
+}
+
+TEST_F(GuardedMachine, SkipsMotionsThatWereDropped) {
+    machine_.rapid(-60, 0, 30);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.move();
+    machine_.rapid(60, 0, 20); // into the clamp, but dropped before it is read
+    machine_.abort_at_rest();
+    const uint64_t last = machine_.rapid(0, 0, 30);
+    EXPECT_EQ(permitted(), last);
+    EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(GuardedMachine, CountsInTheUnitOfTheMachine) {
+    Machine inch;
+    app::Guard guard(setup_.setup, *inch.ring, 25.4, 1.0);
+    feeler_segment motion = inch.next;
+    motion.shape = FEELER_LINE;
+    motion.purpose = FEELER_RAPID;
+    motion.to[0] = 52.9 / 25.4;
+    motion.to[2] = (20.0 + tip) / 25.4;
+    std::copy(std::begin(motion.to), std::end(motion.to), std::begin(inch.goal));
+    motion.to[0] = 52.99 / 25.4;
+    inch.queue(motion);
+    motion.to[0] = 53.01 / 25.4;
+    inch.queue(motion);
+    check_all(guard);
+    EXPECT_EQ(inch.ring->permitted, 1U);
+}
+
+TEST(LiveControl, ComparesOffsetsAndLengths) {
+    const app::SetupFile setup = setup_of(setup_text);
+    app::ControlState control{.origin = {0, 0, -200}};
+    EXPECT_EQ(app::difference(setup, control, 1.0, 0.01), "");
+    control.origin[0] = 0.009;
+    EXPECT_EQ(app::difference(setup, control, 1.0, 0.01), "");
+    control.origin[0] = 0.011;
+    EXPECT_THAT(app::difference(setup, control, 1.0, 0.01),
+                AllOf(HasSubstr("G54 X"), HasSubstr("0.0110"), HasSubstr("0.0000")));
+    control.origin = {0, 0, -200 / 25.4};
+    EXPECT_EQ(app::difference(setup, control, 25.4, 0.01), "");
+    EXPECT_NE(app::difference(setup, control, 1.0, 0.01), "");
+    control.origin = {0, 0, -200};
+    control.rotation_deg = 1.0;
+    EXPECT_THAT(app::difference(setup, control, 1.0, 0.01), HasSubstr("turned"));
+    control.rotation_deg = 0.0;
+    control.work_offset = 2;
+    EXPECT_THAT(app::difference(setup, control, 1.0, 0.01), HasSubstr("G55"));
+    control.work_offset = 1;
+    control.tool = 1;
+    EXPECT_THAT(app::difference(setup, control, 1.0, 0.01), HasSubstr("length of tool 1"));
+    control.tool_length = 100.0;
+    EXPECT_EQ(app::difference(setup, control, 1.0, 0.01), "");
+    control.tool = 3;
+    EXPECT_THAT(app::difference(setup, control, 1.0, 0.01), HasSubstr("Tool 3"));
+}
+
+TEST(LiveControl, ReadsTheStatus) {
+    const auto state = app::read_control_state(
+        R"({"work_offset": 3, "origin": [1, 2, 3, 4, 5, 6, 7, 8, 9], "rotation": 0.5, "tool": 4, "tool_length": 80.25})");
+    ASSERT_TRUE(state.has_value());
+    EXPECT_EQ(state->work_offset, 3);
+    EXPECT_EQ(state->origin[8], 9.0);
+    EXPECT_EQ(state->tool, 4);
+    EXPECT_EQ(state->tool_length, 80.25);
+    for (
+        const char* const bad :
+        {"", "{}", "[1]", "{\"work_offset\": 1}",
+         R"({"work_offset": 1, "origin": [1], "rotation": 0, "tool": 4, "tool_length": 1})",
+         R"({"work_offset": "a", "origin": [1,2,3,4,5,6,7,8,9], "rotation": 0, "tool": 4, "tool_length": 1})"})
+        EXPECT_FALSE(app::read_control_state(bad).has_value()) << bad;
+}
+
+/// A program of random lines and arcs, and the same motions as LinuxCNC queues them.
+struct RandomMotions {
+    explicit RandomMotions(uint32_t seed) : random(seed) {
+        program = "G21 G90 G17 G54 G61.1\nM61 Q1\nG43 H1\nM3 S1000\n";
+        machine.next.turns_on = 1;
+        const double start[] = {-60.0, 0.0, 40.0};
+        move_to(start, true);
+        for (int i = 0; i < 40; ++i) add();
+        program += "M2\n";
+    }
+
+    double between(double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    }
+    bool chance(double share) { return between(0, 1) < share; }
+
+    void move_to(const double (&to)[3], bool is_rapid) {
+        program += fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}{}\n", is_rapid ? "G0" : "G1", to[0],
+                               to[1], to[2], is_rapid ? "" : " F600");
+        machine.line(to[0], to[1], to[2], is_rapid ? FEELER_RAPID : FEELER_FEED);
+        std::copy(std::begin(to), std::end(to), std::begin(at));
+    }
+
+    /// An arc about a centre in one of the three planes, of less than a turn, or some turns.
+    void arc() {
+        const int normal = static_cast<int>(random() % 3);
+        const int u = (normal + 1) % 3, v = (normal + 2) % 3;
+        double centre[3] = {at[0], at[1], at[2]};
+        centre[u] += round6(between(-8, 8));
+        centre[v] += round6(between(-8, 8));
+        const double radius = std::hypot(at[u] - centre[u], at[v] - centre[v]);
+        const double begin = std::atan2(at[v] - centre[v], at[u] - centre[u]);
+        const bool is_clockwise = chance(0.5), is_full = chance(0.2);
+        const double angle = begin + between(0.3, 6.0);
+        double to[3] = {at[0], at[1], at[2]};
+        if (!is_full) {
+            to[u] = round6(centre[u] + radius * std::cos(angle));
+            to[v] = round6(centre[v] + radius * std::sin(angle));
+        }
+        to[normal] = round6(to[normal] + between(-2, 3));
+        const int turns = chance(0.2) ? 2 : 1;
+        const char* const planes[] = {"G19", "G18", "G17"};
+        // The third axis of G18 counts its angle from Z to X, as here.
+        program += fmt::format("{} {} X{:.6f} Y{:.6f} Z{:.6f}", planes[normal],
+                               is_clockwise ? "G2" : "G3", to[0], to[1], to[2]);
+        for (const int axis : {u, v})
+            program += fmt::format(" {}{:.6f}", "IJK"[axis], centre[axis] - at[axis]);
+        program += turns > 1 ? fmt::format(" P{} F600\n", turns) : " F600\n";
+
+        feeler_segment motion = machine.next;
+        motion.shape = FEELER_ARC;
+        motion.purpose = FEELER_CURVE;
+        motion.turns = is_clockwise ? -turns : turns - 1;
+        motion.normal[normal] = 1.0;
+        for (int i = 0; i < 3; ++i) {
+            motion.to[i] = to[i] + (i == 2 ? tip : 0.0);
+            motion.centre[i] = centre[i] + (i == 2 ? tip : 0.0);
+        }
+        machine.queue(motion);
+        std::copy(std::begin(to), std::end(to), std::begin(at));
+    }
+
+    static double round6(double value) { return std::round(value * 1e6) / 1e6; }
+
+    void add() {
+        if (chance(0.4)) return arc();
+        const double to[] = {round6(between(-58, 56)), round6(between(-38, 38)),
+                             round6(chance(0.5) ? between(-3, 2) : between(1, 40))};
+        move_to(to, chance(0.3));
+    }
+
+    std::mt19937 random;
+    Machine machine;
+    std::string program;
+    double at[3] = {};
+};
+
+/// The guard permits the motions before the first one that a check of the program does not call
+/// clear, and no more.
+TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
+    const test_support::ScopedFolder folder;
+    const std::string path = folder.write("mill.toml", setup_text);
+    const app::SetupFile setup = setup_of(setup_text);
+    size_t stopped_late = 0;
+    for (uint32_t seed = 1; seed <= 60; ++seed) {
+        RandomMotions motions(seed);
+        app::CheckJob job;
+        job.program = folder.write("random.ngc", motions.program);
+        job.setup = path;
+        job.detail = core::Detail::every_pair;
+        const auto run = app::run_check(job);
+        ASSERT_TRUE(run.has_value()) << run.error().message;
+        ASSERT_FALSE(run->stopped.has_value()) << run->stopped->message << "\n" << motions.program;
+        uint64_t clear = 0;
+        for (const app::CheckedBlock& block : run->blocks) {
+            if (block.result.motion == core::BlockMotion::none) continue;
+            const bool has_error =
+                std::any_of(run->findings.begin(), run->findings.end(), [&](const auto& finding) {
+                    return finding.severity == core::Severity::error
+                           && finding.block == block.block;
+                });
+            if (block.result.verdict != core::Verdict::clear || has_error) break;
+            ++clear;
+        }
+        app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 1.0);
+        while (guard.has_motion() && guard.step()) {
+        }
+        EXPECT_EQ(motions.machine.ring->permitted, clear) << "seed " << seed << "\n"
+                                                          << motions.program;
+        stopped_late += clear > 3 && clear < motions.machine.ring->written;
+    }
+    EXPECT_GT(stopped_late, 20U);
+}
+
+} // namespace
+} // namespace app_test
