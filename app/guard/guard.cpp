@@ -1,16 +1,22 @@
 #include "app/guard/guard.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "core/base/math.h"
 #include "core/base/platform.h"
 
 namespace app {
 namespace {
 
 constexpr int64_t news_after = 500; // milliseconds
+constexpr double least_time = 1e-7; // seconds
 
 std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer) {
-    std::string text = fmt::format("Feeler stops before line {}: {}", motion.line, answer.reason);
+    std::string text = motion.line > 0 ? fmt::format("Feeler stops before line {}: ", motion.line)
+                                       : std::string("Feeler stops before the next motion: ");
+    text += answer.reason;
     if (!answer.cure.empty()) text += " " + answer.cure;
     return text + " Abort the program to go on.";
 }
@@ -28,6 +34,31 @@ std::string why_unknown(const feeler_ring& ring) {
     return {};
 }
 
+void PermitTimes::add(double seconds) {
+    const double steps = core::log(std::max(seconds, least_time) / least_time) / core::log(1.1);
+    ++counts_[std::min(static_cast<size_t>(steps), counts_.size() - 1)];
+    ++all_;
+}
+
+double PermitTimes::within(double share) const {
+    uint64_t seen = 0;
+    for (size_t i = 0; i < counts_.size(); ++i) {
+        seen += counts_[i];
+        if (seen > 0 && static_cast<double>(seen) >= share * static_cast<double>(all_))
+            return least_time * core::pow(1.1, static_cast<double>(i + 1));
+    }
+    return 0.0;
+}
+
+bool claim(feeler_ring& ring) {
+    uint64_t owner = feeler_load(&ring.process);
+    const uint64_t own = core::platform::process_id();
+    if (owner == own) return true;
+    if (owner != 0 && core::platform::is_running(static_cast<unsigned>(owner))) return false;
+    return __atomic_compare_exchange_n(&ring.process, &owner, own, false, __ATOMIC_ACQ_REL,
+                                       __ATOMIC_ACQUIRE);
+}
+
 Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double most_override)
     : ring_(ring), check_(setup, most_override), unit_(unit) {
     cleared_ = feeler_load(&ring_.cleared);
@@ -36,7 +67,16 @@ Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double mo
         if (after_motion) after_motion(motion);
     };
     // What an earlier guard has read and not permitted is checked again.
-    feeler_store(&ring_.read, feeler_load(&ring_.permitted));
+    session_ = ring_.session;
+    last_permit_ = feeler_load(&ring_.permitted);
+    uint64_t permitted = feeler_permitted_number(last_permit_);
+    if (last_permit_ != feeler_permit(session_, permitted)
+        || permitted > feeler_load(&ring_.written)) {
+        permitted = 0;
+        last_permit_ = feeler_permit(session_, permitted);
+        feeler_store(&ring_.permitted, last_permit_);
+    }
+    feeler_store(&ring_.read, permitted);
 }
 
 /// Takes note of a violation that the operator has cleared.
@@ -65,6 +105,23 @@ bool Guard::may_permit() {
     return reason_.empty();
 }
 
+/// Whether the first motion can be checked: those that an earlier guard has permitted are complete,
+/// since this one does not know how they end.
+bool Guard::can_begin() const {
+    const uint64_t permitted = feeler_permitted_number(last_permit_);
+    const bool has_all =
+        feeler_load(&ring_.released) >= permitted || feeler_load(&ring_.dropped) >= permitted;
+    return has_all && feeler_load(&ring_.busy) == 0;
+}
+
+void Guard::permit(uint64_t number) {
+    is_disturbed_ = is_disturbed_ || feeler_load(&ring_.permitted) != last_permit_;
+    if (is_disturbed_) return;
+    ++permitted_;
+    last_permit_ = feeler_permit(session_, number);
+    feeler_store(&ring_.permitted, last_permit_);
+}
+
 bool Guard::step() {
     constexpr size_t cuts_at_a_time = 16;
     feeler_store(&ring_.alive, ring_.alive + 1);
@@ -77,7 +134,10 @@ bool Guard::step() {
     const feeler_segment motion = in_mm(ring_.segment[next % FEELER_RING_SEGMENTS], unit_);
     const bool is_dropped =
         next <= feeler_load(&ring_.dropped) && next > feeler_load(&ring_.released);
-    if (!is_dropped && !may_permit()) return false;
+    is_disturbed_ = is_disturbed_ || motion.number != next;
+    if (is_disturbed_) return false;
+    has_begun_ = has_begun_ || can_begin();
+    if (!is_dropped && (!has_begun_ || !may_permit())) return false;
     if (!is_dropped) judge(motion);
     feeler_store(&ring_.read, next);
     return true;
@@ -85,10 +145,11 @@ bool Guard::step() {
 
 void Guard::judge(const feeler_segment& motion) {
     const bool follows_refusal = check_.is_refused() && !is_after_drop(motion);
+    const double begin = core::platform::thread_cpu_seconds();
     const LiveAnswer answer = is_latched_ ? check_.judge_retreat(motion) : check_.judge(motion);
+    times_.add(core::platform::thread_cpu_seconds() - begin);
     if (answer.may_move) {
-        ++permitted_;
-        feeler_store(&ring_.permitted, motion.number);
+        permit(motion.number);
     } else if (!follows_refusal) {
         ++refused_;
         is_latched_ = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -7,6 +8,18 @@
 #include "app/guard/live_check.h"
 
 namespace app {
+
+/// How long the permits of many motions took, to within a tenth.
+class PermitTimes {
+public:
+    void add(double seconds);
+    /// The time within which this share of them was given; 0 if there are none.
+    double within(double share) const;
+
+private:
+    std::array<uint64_t, 192> counts_{}; // of each power of 1.1, from a tenth of a microsecond on
+    uint64_t all_ = 0;
+};
 
 /// What feeler guard does with a ring: reads motions in order, checks them, and permits them.
 ///
@@ -36,13 +49,21 @@ public:
     /// Whether a motion waits to be checked.
     bool has_motion() const { return feeler_load(&ring_.written) > ring_.read; }
 
+    /// Whether another process has written to the guard's side of the ring. This one must end then.
+    bool is_disturbed() const { return is_disturbed_; }
+
+    /// How many motions were permitted and refused.
     uint64_t permitted() const { return permitted_; }
     uint64_t refused() const { return refused_; }
+    /// CPU time of each check.
+    const PermitTimes& times() const { return times_; }
 
 private:
     void follow_operator();
     bool may_permit();
+    bool can_begin() const;
     void judge(const feeler_segment& motion);
+    void permit(uint64_t number);
 
     feeler_ring& ring_;
     LiveCheck check_;
@@ -51,8 +72,14 @@ private:
     uint64_t cleared_ = 0;
     std::string reason_, told_; // why nothing is permitted now; and what the operator knows of it
     int64_t since_ = 0;         // milliseconds
+    uint64_t session_ = 0, last_permit_ = 0;
+    bool has_begun_ = false, is_disturbed_ = false;
     uint64_t permitted_ = 0, refused_ = 0;
+    PermitTimes times_;
 };
+
+/// Makes this process the guard of the ring. False if another one is that and still runs.
+bool claim(feeler_ring& ring);
 
 /// Why a ring is of another kind than this program knows; empty if it is not.
 std::string why_unknown(const feeler_ring& ring);

@@ -94,7 +94,10 @@ double distance_to_segment(const core::Vec3& point, const core::Vec3& a, const c
 /// How far LinuxCNC may leave the path at the end of a feed that is blended without a tolerance: it
 /// begins the next motion while this one brakes, with half the acceleration, from its full feed.
 double most_blend(const feeler_segment& motion, double most_override) {
-    const double feed = std::min(motion.feed * most_override, motion.most_feed);
+    double feed = motion.feed * most_override;
+    // Overrides of the spindle are at most 200 % in LinuxCNC unless its ini file says more.
+    if (motion.per_turn > 0.0) feed = motion.per_turn * 2.0 * std::abs(motion.speed) / 60.0;
+    feed = std::min(feed, motion.most_feed);
     return motion.acceleration > 0.0 ? feed * feed / motion.acceleration : core::infinity;
 }
 
@@ -175,6 +178,7 @@ feeler_segment in_mm(feeler_segment motion, double unit) {
     for (double& value : motion.centre) scale(value);
     scale(motion.feed);
     scale(motion.most_feed);
+    scale(motion.per_turn);
     scale(motion.acceleration);
     scale(motion.tolerance);
     return motion;
@@ -250,19 +254,32 @@ void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& 
     // The planner may have left the path where it blends into the next motion.
     if (motion.shape == FEELER_ARC) {
         const int normal = path.arc->normal;
-        path.path_error += std::abs(distance_from_axis(there, path.arc->centre, normal)
-                                    - distance_from_axis(from, path.arc->centre, normal));
-        const double whole = arc_of(motion, normal, values_of(motion.to)).angle;
-        // How many turns were made is not known: at least the part of the first.
+        const core::ArcPath whole = arc_of(motion, normal, values_of(motion.to));
         const double turn = 2.0 * std::numbers::pi;
-        double angle = turn_about(from, there, path.arc->centre, normal);
-        if (whole < 0.0) angle -= turn;
-        if (std::abs(angle) > std::abs(whole)) angle = 0.0; // it had hardly begun
+        double angle = turn_about(from, there, whole.centre, normal);
+        if (whole.angle < 0.0) angle -= turn;
+        // Where it is on its way, or on which of its turns, is not known.
+        const bool is_known =
+            std::abs(angle) <= std::abs(whole.angle) && motion.turns <= 0 && motion.turns >= -1;
+        if (!is_known) return leave(part);
+        const double height = from[normal] + angle / whole.angle * (to[normal] - from[normal]);
+        path.path_error += std::abs(distance_from_axis(there, whole.centre, normal)
+                                    - distance_from_axis(from, whole.centre, normal))
+                           + std::abs(there[normal] - height);
         path.arc->angle = angle;
     } else {
         path.path_error += distance_to_segment(there, from, to);
     }
     run(setup_, std::move(events), *made_, false);
+    if (after_motion) after_motion(part);
+}
+
+/// Notes where a motion was stopped, and takes nothing for cut.
+void LiveCheck::leave(const feeler_segment& part) {
+    made_->position = position_of(values_of(part.to), setup_.machine);
+    made_->spread = {};
+    made_->corners.last = {};
+    made_->memory.bounds.clear();
     if (after_motion) after_motion(part);
 }
 
@@ -283,6 +300,7 @@ core::Result<void> LiveCheck::place(const feeler_segment& motion) {
         state.is_assumed = {};
         made_ = state;
         ahead_ = std::move(state);
+        is_refused_ = false;
         return {};
     }
     if (is_after_drop(motion)) {

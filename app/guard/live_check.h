@@ -64,6 +64,7 @@ private:
     void go_back();
     core::Result<void> place(const feeler_segment& motion);
     void make(const feeler_segment& motion);
+    void leave(const feeler_segment& part);
     void make_part(const feeler_segment& motion, const core::AxisValues& stopped_at);
     std::string objection(const feeler_segment& motion) const;
     std::vector<core::Event> events_of(const feeler_segment& motion,

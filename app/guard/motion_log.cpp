@@ -23,6 +23,9 @@ std::string comment_of(std::string text) {
     return "(" + text + ")";
 }
 
+/// Without the sign of a zero.
+double plain(double value) { return std::abs(value) < 5e-7 ? 0.0 : value; }
+
 } // namespace
 
 struct MotionLog::State {
@@ -45,7 +48,7 @@ std::string MotionLog::State::axis_words(const double (&values)[core::axis_count
     std::string words;
     for (size_t i = 0; i < core::axis_count; ++i)
         if (values[i] != from[i] || (all && i < 3))
-            words += fmt::format(" {}{:.6f}", core::axis_letters[i], values[i] - origin[i]);
+            words += fmt::format(" {}{:.6f}", core::axis_letters[i], plain(values[i] - origin[i]));
     return words;
 }
 
@@ -94,7 +97,8 @@ void MotionLog::State::write_motion(const feeler_segment& motion) {
              << axis_words(motion.to, motion.from, true);
         for (size_t i = 0; i < 3; ++i)
             if (i != normal)
-                file << fmt::format(" {}{:.6f}", "IJK"[i], motion.centre[i] - motion.from[i]);
+                file << fmt::format(" {}{:.6f}", "IJK"[i],
+                                    plain(motion.centre[i] - motion.from[i]));
         const int turns = 1 + (motion.turns < 0 ? -1 - motion.turns : motion.turns);
         if (turns > 1) file << fmt::format(" P{}", turns);
         file << fmt::format(" F{:.3f}", 60.0 * motion.feed);
@@ -154,6 +158,8 @@ void MotionLog::add_refused(const feeler_segment& motion, const std::string& rea
     state_->reason = reason;
     state_->file.flush();
 }
+
+void MotionLog::flush() { state_->file.flush(); }
 
 bool MotionLog::is_whole() const { return state_->file.good(); }
 

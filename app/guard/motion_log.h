@@ -31,6 +31,8 @@ public:
     /// Notes a motion that was refused, with the reason. It is written as a comment once the
     /// motions before it are there, and as the last motion if the log ends with it.
     void add_refused(const feeler_segment& motion, const std::string& reason);
+    /// Writes to the disk what is there.
+    void flush();
     /// Whether everything so far could be written, for example because the disk is full. The guard
     /// works without its log.
     bool is_whole() const;

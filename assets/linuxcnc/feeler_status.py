@@ -10,7 +10,6 @@ once for a line "?". A line "say TEXT" becomes a message of LinuxCNC.
 import json
 import os
 import select
-import sys
 
 import linuxcnc
 
@@ -47,17 +46,19 @@ def status_of(stat):
 
 def main():
     stat, command = linuxcnc.stat(), linuxcnc.command()
-    last = None
+    last, rest = None, b""
     while True:
-        readable, _, _ = select.select([sys.stdin], [], [], INTERVAL)
+        readable, _, _ = select.select([0], [], [], INTERVAL)
         is_asked = False
         if readable:
-            line = sys.stdin.readline()
-            if not line:
+            read = os.read(0, 65536)
+            if not read:
                 return
-            if line.startswith("say "):
-                command.error_msg(line[4:].strip())
-            is_asked = line.strip() == "?"
+            *lines, rest = (rest + read).split(b"\n")
+            for line in lines:
+                if line.startswith(b"say "):
+                    command.error_msg(line[4:].decode("utf-8", "replace"))
+                is_asked = is_asked or line == b"?"
         try:
             stat.poll()
         except linuxcnc.error:

@@ -34,6 +34,9 @@ std::string build_id();
 
 unsigned process_id();
 
+/// Whether a process with this id runs.
+bool is_running(unsigned process);
+
 /// The value of an environment variable; empty if it is unset or empty.
 std::string environment_variable(const char* name);
 

@@ -77,6 +77,10 @@ std::string build_id() {
     return id;
 }
 
+bool is_running(unsigned process) {
+    return ::kill(static_cast<pid_t>(process), 0) == 0 || errno == EPERM;
+}
+
 unsigned process_id() { return static_cast<unsigned>(::getpid()); }
 
 std::string environment_variable(const char* name) {

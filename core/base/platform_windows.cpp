@@ -201,6 +201,14 @@ std::string build_id() {
     return {};
 }
 
+bool is_running(unsigned process) {
+    const HANDLE handle = ::OpenProcess(SYNCHRONIZE, FALSE, process);
+    if (!handle) return false;
+    const bool runs = ::WaitForSingleObject(handle, 0) == WAIT_TIMEOUT;
+    ::CloseHandle(handle);
+    return runs;
+}
+
 unsigned process_id() { return ::GetCurrentProcessId(); }
 
 std::string environment_variable(const char* name) {

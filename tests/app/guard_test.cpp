@@ -99,6 +99,8 @@ public:
         ring->version = FEELER_RING_VERSION;
         ring->bytes = sizeof *ring;
         ring->segments = FEELER_RING_SEGMENTS;
+        ring->session = 0x1234;
+        ring->permitted = feeler_permit(ring->session, 0);
         next.tool = 1;
         next.turns_on = 1;
         next.speed = 1000.0;
@@ -134,15 +136,20 @@ public:
         return number;
     }
 
+    uint64_t permitted() const {
+        EXPECT_EQ(ring->permitted >> FEELER_NUMBER_BITS, ring->session);
+        return feeler_permitted_number(ring->permitted);
+    }
+
     /// Makes all motions that are permitted.
     void move() {
-        ring->released = std::min(ring->permitted, ring->written);
+        ring->released = std::min(permitted(), ring->written);
         ring->made = ring->released;
     }
 
     /// The operator aborts while motion `during` is on its way at a place of the tip.
     void abort(uint64_t during, double x, double y, double z) {
-        ring->released = std::min(ring->permitted, ring->written);
+        ring->released = std::min(permitted(), ring->written);
         ring->made = during - 1;
         ring->dropped = ring->written;
         follows = during;
@@ -186,7 +193,7 @@ protected:
     }
     uint64_t permitted() {
         check_all(guard_);
-        return machine_.ring->permitted;
+        return machine_.permitted();
     }
     void catch_up() {
         for (int i = 0; i < 100; ++i) guard_.step();
@@ -326,7 +333,7 @@ TEST_F(GuardedMachine, RefusesWhatItCannotCheck) {
         motion.to[0] = 10.0;
         change(motion);
         machine_.queue(motion);
-        const uint64_t before = machine_.ring->permitted;
+        const uint64_t before = machine_.permitted();
         EXPECT_EQ(permitted(), before);
         machine_.abort_at_rest();
         return told_.empty() ? std::string() : told_.back();
@@ -380,7 +387,7 @@ TEST_F(GuardedMachine, WaitsWhileThereIsAnObjection) {
     guard_.objection = [&] { return why; };
     machine_.rapid(0, 0, 30);
     EXPECT_FALSE(guard_.step());
-    EXPECT_EQ(machine_.ring->permitted, 0U);
+    EXPECT_EQ(machine_.permitted(), 0U);
     EXPECT_EQ(machine_.ring->read, 0U);
     why.clear();
     EXPECT_EQ(permitted(), 1U);
@@ -396,7 +403,81 @@ TEST_F(GuardedMachine, TakesOverFromAGuardThatWasKilled) {
     app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
     listen(other);
     check_all(other);
-    EXPECT_EQ(machine_.ring->permitted, 2U);
+    EXPECT_EQ(machine_.permitted(), 2U);
+}
+
+/// A guard does not know how motions end that an earlier one has permitted.
+TEST_F(GuardedMachine, BeginsWhenTheMotionsOfAnEarlierGuardAreComplete) {
+    machine_.rapid(-60, 0, 30);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.rapid(-60, 0, -5);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    EXPECT_FALSE(other.step());
+    machine_.move();
+    machine_.ring->busy = 1;
+    EXPECT_FALSE(other.step());
+    machine_.ring->busy = 0;
+    EXPECT_TRUE(other.step());
+    EXPECT_EQ(machine_.permitted(), 2U);
+}
+
+TEST_F(GuardedMachine, EndsWhenAnotherGuardPermits) {
+    machine_.rapid(-60, 0, 30);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.move();
+    machine_.rapid(-60, 0, 20);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    EXPECT_TRUE(other.step());
+    machine_.move();
+    machine_.rapid(-60, 0, 10);
+    check_all(guard_);
+    EXPECT_TRUE(guard_.is_disturbed());
+    EXPECT_EQ(machine_.permitted(), 2U);
+}
+
+TEST_F(GuardedMachine, IsTheOnlyOne) {
+    EXPECT_TRUE(app::claim(*machine_.ring));
+    EXPECT_TRUE(app::claim(*machine_.ring));
+    machine_.ring->process = 1; // always runs
+    EXPECT_FALSE(app::claim(*machine_.ring));
+    machine_.ring->process = 0x3FFFFFFF; // cannot run
+    EXPECT_TRUE(app::claim(*machine_.ring));
+}
+
+TEST_F(GuardedMachine, IgnoresPermitsOfAnotherSession) {
+    machine_.ring->permitted = feeler_permit(0x4321, 7);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    EXPECT_EQ(machine_.permitted(), 0U);
+    machine_.rapid(-60, 0, 30);
+    EXPECT_TRUE(other.step());
+    EXPECT_EQ(machine_.permitted(), 1U);
+}
+
+/// An arc that is stopped on its way has cut up to there.
+TEST_F(GuardedMachine, FollowsPartsOfArcs) {
+    const auto half_turn = [&] {
+        feeler_segment arc = machine_.next; // from X20 over Y20 to X-20, about the middle
+        arc.shape = FEELER_ARC;
+        arc.purpose = FEELER_CURVE;
+        arc.normal[2] = 1.0;
+        arc.centre[2] = -5 + tip;
+        arc.to[0] = -20.0, arc.to[2] = -5 + tip;
+        return machine_.queue(arc);
+    };
+    machine_.rapid(20, 0, 30);
+    machine_.line(20, 0, -5);
+    const uint64_t arc = half_turn();
+    EXPECT_EQ(permitted(), arc);
+    machine_.abort(arc, 0, 20, -5);
+    machine_.rapid(0, 20, 5);
+    const uint64_t down = machine_.rapid(0, 20, -4.9); // into its own cut
+    EXPECT_EQ(permitted(), down);
+    machine_.move();
+    const uint64_t up = machine_.rapid(0, 20, 5);
+    machine_.rapid(-20, 0, 5);
+    machine_.rapid(-20, 0, -4.9); // the second half was not cut
+    EXPECT_EQ(permitted(), up + 1);
+    EXPECT_THAT(told_.back(), HasSubstr("stock"));
 }
 
 TEST_F(GuardedMachine, SkipsMotionsThatWereDropped) {
@@ -424,7 +505,20 @@ TEST_F(GuardedMachine, CountsInTheUnitOfTheMachine) {
     motion.to[0] = 53.01 / 25.4;
     inch.queue(motion);
     check_all(guard);
-    EXPECT_EQ(inch.ring->permitted, 1U);
+    EXPECT_EQ(inch.permitted(), 1U);
+}
+
+TEST(PermitTimes, TellsQuantiles) {
+    app::PermitTimes times;
+    EXPECT_EQ(times.within(0.5), 0.0);
+    for (int i = 0; i < 999; ++i) times.add(1e-4);
+    times.add(0.5);
+    EXPECT_NEAR(times.within(0.5), 1e-4, 1e-5);
+    EXPECT_NEAR(times.within(0.999), 1e-4, 1e-5);
+    EXPECT_NEAR(times.within(1.0), 0.5, 0.05);
+    times.add(0.0);
+    times.add(1e9);
+    EXPECT_GT(times.within(1.0), 5.0);
 }
 
 TEST(LiveControl, ComparesOffsetsAndLengths) {
@@ -577,8 +671,7 @@ TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
         app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 1.0);
         while (guard.has_motion() && guard.step()) {
         }
-        EXPECT_EQ(motions.machine.ring->permitted, clear) << "seed " << seed << "\n"
-                                                          << motions.program;
+        EXPECT_EQ(motions.machine.permitted(), clear) << "seed " << seed << "\n" << motions.program;
         stopped_late += clear > 3 && clear < motions.machine.ring->written;
     }
     EXPECT_GT(stopped_late, 20U);

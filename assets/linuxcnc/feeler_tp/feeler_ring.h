@@ -62,6 +62,7 @@ struct feeler_segment {
     double speed;      /* of the spindle, as commanded, 1/min; negative: counterclockwise */
     double feed;       /* as programmed, units per second */
     double most_feed;  /* of which overrides make no more */
+    double per_turn;   /* units per turn of the spindle that it follows; 0: it follows none */
     double acceleration; /* units per second squared, at most */
     double tolerance;  /* of a blend; 0: none is stated */
     double from[9], to[9];
@@ -73,28 +74,34 @@ struct feeler_ring {
     uint32_t magic, version;
     uint32_t bytes;    /* of this struct */
     uint32_t segments; /* FEELER_RING_SEGMENTS */
-    uint64_t session;  /* another one each time LinuxCNC starts */
+    uint64_t session;  /* 16 bits: another one each time LinuxCNC starts */
 
     /* written by feeler_tp */
     uint64_t written;   /* number of the last motion in the ring */
     uint64_t released;  /* number of the last motion that the planner got */
-    uint64_t executing; /* number of the motion that is being made; 0: the axes are at rest */
+    uint64_t busy;      /* 1: the planner has motions that are not complete */
     uint64_t made;      /* all motions up to this number that were released were made */
     uint64_t dropped;   /* motions up to this number that were not released are gone */
     uint64_t cleared;   /* how often the operator cleared a violation (feeler-tp.clear) */
     uint64_t external;  /* 1: an external offset (eoffset) is in use, so nothing is released */
-    uint64_t failed;    /* number of a motion that the planner refused; 0: none */
     uint64_t reserved[8];
 
     /* written by the guard */
     uint64_t read;      /* number of the last motion that was read */
-    uint64_t permitted; /* the planner may have all motions up to this number */
+    uint64_t permitted; /* feeler_permit: the planner may have all motions up to a number */
     uint64_t alive;     /* counts up at least ten times a second */
     uint64_t latched;   /* 1: a violation was found and has not been cleared */
+    uint64_t process;   /* id of the guard's process: one guard at a time */
     uint64_t reserved_too[8];
 
     struct feeler_segment segment[FEELER_RING_SEGMENTS]; /* number n at n % FEELER_RING_SEGMENTS */
 };
+
+/* A permit is only valid in the session for which it was given. */
+#define FEELER_NUMBER_BITS 48
+#define feeler_permit(session, number) \
+    ((uint64_t)(session) << FEELER_NUMBER_BITS | (uint64_t)(number))
+#define feeler_permitted_number(permit) ((permit) & (((uint64_t)1 << FEELER_NUMBER_BITS) - 1))
 
 #define feeler_load(counter) __atomic_load_n(counter, __ATOMIC_ACQUIRE)
 #define feeler_store(counter, value) __atomic_store_n(counter, value, __ATOMIC_RELEASE)

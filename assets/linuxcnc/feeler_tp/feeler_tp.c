@@ -133,16 +133,18 @@ static int next_id, term_cond = TC_TERM_COND_PARABOLIC; /* as after tpInit */
 static double tolerance;
 static int is_aborting;
 static uint64_t last_begun; /* the motion that the axes began last */
-/* Whether motions were dropped since the last one was accepted, and whether that ended
- * `last_begun` on its way. */
-static int was_dropped, was_stopped;
+static int was_dropped; /* motions were, since the last one was accepted */
+static int was_stopped; /* that ended `last_begun` on its way, and nothing was released since */
 static EmcPose stopped_at;
+static int is_pausing;     /* by the operator */
+static int was_refused;    /* the planner refused a motion since the last one was accepted */
+static double per_turn;    /* of the spindle sync that is set */
+static double known_speed; /* of the spindle, while no tap reverses it */
+static uint64_t last_tap;
 static uint64_t released_at_stop = UINT64_MAX; /* motions after `last_begun` were not made */
 static int was_clear_pressed;
 static uint64_t last_alive;
-static long silence; /* nanoseconds since the guard's last sign of life */
-
-static uint64_t const known_silence = 1000000000;
+static long long alive_at; /* when the guard gave its last sign of life, nanoseconds */
 
 static void copy_pose(double *to, EmcPose const *pose) {
     double const values[9] = {pose->tran.x, pose->tran.y, pose->tran.z, pose->a, pose->b,
@@ -176,14 +178,16 @@ static uint64_t executing(TP_STRUCT *tp) {
     return ring->released - (uint32_t)((uint32_t)ring->released - low);
 }
 
-/* Notes where the axes came to rest before the end of a motion; 0: they were at rest. */
-static void note_stop(TP_STRUCT *tp, uint64_t motion) {
+/* Notes where the axes came to rest. If the planner `was_busy`, that was before the end of a motion,
+ * and motions behind it were not made; 0: it is not known which, so the last one that is known. */
+static void note_stop(TP_STRUCT *tp, int was_busy, uint64_t motion) {
     real_tpGetPos(tp, &goal);
+    if (!was_busy) return;
+    released_at_stop = ring->released;
     if (!motion) return;
     last_begun = motion;
     was_stopped = 1;
     stopped_at = goal;
-    released_at_stop = ring->released;
 }
 
 /* --- accepting motions -------------------------------------------------------------------------*/
@@ -209,11 +213,11 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     memset(s, 0, sizeof *s);
     s->number = c->number = ring->written + 1;
     s->follows = was_dropped ? last_begun : c->number - 1;
-    if (was_stopped) {
+    if (was_dropped && was_stopped) {
         s->follows_part = 1;
         copy_pose(s->stopped_at, &stopped_at);
     }
-    was_dropped = was_stopped = 0;
+    was_dropped = 0;
     s->shape = shape;
     s->purpose = shape == FEELER_TAP ? FEELER_FEED : c->type;
     s->blending = term_cond == TC_TERM_COND_STOP    ? FEELER_EXACT_STOP
@@ -224,7 +228,10 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     s->offset = c->tag.fields[GM_FIELD_ORIGIN];
     s->turns = c->turn;
     /* LinuxCNC starts and stops the spindle only once all motions before that were made. */
-    s->speed = status ? status->spindle_status[0].speed : 0.0;
+    if (status && last_tap <= ring->made) known_speed = status->spindle_status[0].speed;
+    if (shape == FEELER_TAP) last_tap = c->number;
+    s->speed = known_speed;
+    s->per_turn = per_turn;
     s->turns_on = s->speed > 0.0 ? 1 : s->speed < 0.0 ? 2 : 0;
     s->feed = c->vel;
     s->most_feed = c->max_vel;
@@ -245,14 +252,18 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     return TP_ERR_OK;
 }
 
-/* Whether a motion is dropped at once: the planner would drop it, too, once it has stopped. */
-static int is_lost(void) { return is_aborting; }
+/* Whether a motion cannot be accepted: while an abort brakes, as in the planner, and once after the
+ * planner has refused a motion that was accepted, so that the program ends there. */
+static int is_closed(void) {
+    int const closed = is_aborting || was_refused;
+    was_refused = 0;
+    return closed;
+}
 
 int tpAddLine(TP_STRUCT *const tp, EmcPose end, int type, double vel, double max_vel, double acc,
               unsigned char enables, char at_speed, int index, struct state_tag_t tag) {
     (void)tp;
-    if (ring->failed) return TP_ERR_FAIL;
-    if (is_lost()) return TP_ERR_OK;
+    if (is_closed()) return TP_ERR_FAIL;
     if (is_same_pose(&goal, &end)) return TP_ERR_ZERO_LENGTH;
     struct call *c = new_call(ADD_LINE);
     if (!c) return TP_ERR_FAIL;
@@ -265,8 +276,7 @@ int tpAddCircle(TP_STRUCT *const tp, EmcPose end, PmCartesian centre, PmCartesia
                 int type, double vel, double max_vel, double acc, unsigned char enables,
                 char at_speed, struct state_tag_t tag) {
     (void)tp;
-    if (ring->failed) return TP_ERR_FAIL;
-    if (is_lost()) return TP_ERR_OK;
+    if (is_closed()) return TP_ERR_FAIL;
     struct call *c = new_call(ADD_CIRCLE);
     if (!c) return TP_ERR_FAIL;
     c->end = end, c->centre = centre, c->normal = normal, c->turn = turn, c->type = type;
@@ -278,8 +288,7 @@ int tpAddCircle(TP_STRUCT *const tp, EmcPose end, PmCartesian centre, PmCartesia
 int tpAddRigidTap(TP_STRUCT *const tp, EmcPose end, double vel, double max_vel, double acc,
                   unsigned char enables, double scale, struct state_tag_t tag) {
     (void)tp;
-    if (ring->failed) return TP_ERR_FAIL;
-    if (is_lost()) return TP_ERR_OK;
+    if (is_closed()) return TP_ERR_FAIL;
     struct call *c = new_call(ADD_TAP);
     if (!c) return TP_ERR_FAIL;
     c->end = end, c->vel = vel, c->max_vel = max_vel, c->acc = acc;
@@ -314,10 +323,16 @@ static int pass_on(TP_STRUCT *tp, struct call *c) {
     return TP_ERR_FAIL;
 }
 
-/* Forgets what waits. The last termination condition still counts. */
+/* Forgets what waits. The last termination condition still counts. The planner ends a
+ * synchronization with its motions when it is aborted. */
 static void drop_calls(TP_STRUCT *tp) {
     for (unsigned i = 0; i < call_count; ++i)
-        if (call_at(i)->what == SET_TERM_COND) pass_on(tp, call_at(i));
+        if (call_at(i)->what == SET_TERM_COND || call_at(i)->what == SET_SYNC)
+            pass_on(tp, call_at(i));
+    if (motion_count > 0) {
+        real_tpSetSpindleSync(tp, 0, 0.0, 0);
+        per_turn = 0;
+    }
     call_count = motion_count = 0;
     was_dropped = 1;
     feeler_store(&ring->dropped, ring->written);
@@ -327,41 +342,42 @@ static void drop_calls(TP_STRUCT *tp) {
 static void fail(TP_STRUCT *tp, struct call const *c, int code) {
     rtapi_print_msg(RTAPI_MSG_ERR, "feeler_tp: the planner refuses the motion of line %d (code %d)\n",
                     c->tag.fields[GM_FIELD_LINE_NUMBER], code);
-    feeler_store(&ring->failed, c->number);
+    was_refused = 1;
     tpAbort(tp);
 }
 
 static void release_permitted(TP_STRUCT *tp) {
-    uint64_t const permitted = feeler_load(&ring->permitted);
+    uint64_t const permit = feeler_load(&ring->permitted);
+    uint64_t const permitted = feeler_permitted_number(permit);
     int const has_external = has_external_offset();
     feeler_store(&ring->external, (uint64_t)has_external);
-    /* Permits for motions that do not exist are none. */
-    int const is_valid = permitted <= ring->written && !has_external;
+    /* Permits of another session, or for motions that do not exist, are none. */
+    int const is_valid = permit == feeler_permit(ring->session, permitted)
+                         && permitted <= ring->written && !has_external;
     int motions = 0;
     while (call_count > 0 && motions < 8 && !real_tcqFull(&tp->queue)) {
         struct call *c = call_at(0);
-        if (is_motion(c)) {
-            if (!is_valid || c->number > permitted) return;
-            ++motions;
-            feeler_store(&ring->released, c->number);
-        }
+        if (is_motion(c) && (!is_valid || c->number > permitted)) return;
         int const result = pass_on(tp, c);
         if (is_motion(c)) {
-            --motion_count;
             /* 0: queued. Positive: the planner found no length in it. */
             if (result < 0) return fail(tp, c, result);
+            ++motions;
+            --motion_count;
+            was_stopped = 0;
+            feeler_store(&ring->released, c->number);
         }
         first_call = (first_call + 1) % CALLS;
         --call_count;
     }
 }
 
-static void show_state(TP_STRUCT *tp, long period) {
+static void show_state(TP_STRUCT *tp) {
     uint64_t const alive = feeler_load(&ring->alive);
-    silence = alive == last_alive ? silence + period : 0;
-    if (silence > 2 * (long)known_silence) silence = 2 * (long)known_silence;
+    long long const now = rtapi_get_time();
+    if (alive != last_alive) alive_at = now;
     last_alive = alive;
-    *pins->guard_alive = alive != 0 && silence < (long)known_silence;
+    *pins->guard_alive = alive != 0 && now - alive_at < 1000000000LL;
     *pins->latched = feeler_load(&ring->latched) != 0;
     *pins->holding = motion_count > 0 && real_tpIsDone(tp);
     if (motion_count > 0)
@@ -376,23 +392,29 @@ static void show_state(TP_STRUCT *tp, long period) {
 
 int tpRunCycle(TP_STRUCT *const tp, long period) {
     if (!is_aborting) release_permitted(tp);
+    int const was_busy = !real_tpIsDone(tp);
+    /* What has been released would be made elsewhere. */
+    if (was_busy && !is_aborting && has_external_offset()) tpAbort(tp);
+    if (is_pausing && !is_aborting) real_tpPause(tp);
     uint64_t const before = executing(tp);
     int const result = real_tpRunCycle(tp, period);
-    if (is_aborting && real_tpIsDone(tp)) {
-        is_aborting = 0;
-        note_stop(tp, before);
+    int const is_busy = !real_tpIsDone(tp);
+    /* The planner ends a pause when it has no motion left; here some may wait. */
+    if (!is_busy && motion_count == 0) is_pausing = 0;
+    if (is_aborting && !is_busy) {
+        is_aborting = is_pausing = 0;
+        note_stop(tp, was_busy, before);
     }
     uint64_t const now = executing(tp);
-    feeler_store(&ring->executing, now);
+    feeler_store(&ring->busy, (uint64_t)is_busy);
     if (now) {
         last_begun = now;
         /* The motion before the present one may still end in a blend. */
         if (now > 2 && now - 2 > ring->made) feeler_store(&ring->made, now - 2);
-    } else if (real_tpIsDone(tp) && ring->released != released_at_stop) {
+    } else if (!is_busy && ring->released != released_at_stop) {
         last_begun = ring->released;
         feeler_store(&ring->made, ring->released);
     }
-    show_state(tp, period);
     return result;
 }
 
@@ -418,6 +440,7 @@ int tpSetTermCond(TP_STRUCT *const tp, int cond, double tol) {
 }
 
 int tpSetSpindleSync(TP_STRUCT *const tp, int spindle, double sync, int wait) {
+    per_turn = sync;
     if (call_count == 0) return real_tpSetSpindleSync(tp, spindle, sync, wait);
     struct call *c = new_call(SET_SYNC);
     if (!c) return TP_ERR_FAIL;
@@ -451,13 +474,14 @@ int tpCreate(TP_STRUCT *const tp, int size, int id) {
 
 int tpClear(TP_STRUCT *const tp) {
     drop_calls(tp);
+    int const was_busy = !real_tpIsDone(tp);
     uint64_t const before = executing(tp);
     int const result = real_tpClear(tp);
-    is_aborting = 0;
+    is_aborting = is_pausing = was_refused = 0;
     term_cond = TC_TERM_COND_PARABOLIC;
-    tolerance = 0;
-    feeler_store(&ring->failed, 0);
-    note_stop(tp, before);
+    tolerance = per_turn = 0;
+    note_stop(tp, was_busy, before);
+    feeler_store(&ring->busy, 0);
     return result;
 }
 
@@ -481,6 +505,12 @@ int tpSetRunDir(TP_STRUCT *const tp, tc_direction_t direction) {
 int tpIsDone(TP_STRUCT *const tp) { return motion_count == 0 && real_tpIsDone(tp); }
 
 int tpQueueDepth(TP_STRUCT *const tp) { return real_tpQueueDepth(tp) + (int)motion_count; }
+
+/* LinuxCNC asks for this once in every cycle, in every mode. */
+int tpActiveDepth(TP_STRUCT *const tp) {
+    show_state(tp);
+    return real_tpActiveDepth(tp);
+}
 
 /* The first motion that waits, if the planner has none. */
 static struct call *waiting_motion(TP_STRUCT *tp) {
@@ -508,10 +538,15 @@ int tpSetCycleTime(TP_STRUCT *tp, double secs) { return real_tpSetCycleTime(tp, 
 int tpSetVmax(TP_STRUCT *tp, double vmax, double most) { return real_tpSetVmax(tp, vmax, most); }
 int tpSetVlimit(TP_STRUCT *tp, double limit) { return real_tpSetVlimit(tp, limit); }
 int tpSetAmax(TP_STRUCT *tp, double amax) { return real_tpSetAmax(tp, amax); }
-int tpPause(TP_STRUCT *tp) { return real_tpPause(tp); }
-int tpResume(TP_STRUCT *tp) { return real_tpResume(tp); }
+int tpPause(TP_STRUCT *tp) {
+    is_pausing = 1;
+    return real_tpPause(tp);
+}
+int tpResume(TP_STRUCT *tp) {
+    is_pausing = 0;
+    return real_tpResume(tp);
+}
 int tpGetPos(TP_STRUCT const *const tp, EmcPose *const pos) { return real_tpGetPos(tp, pos); }
-int tpActiveDepth(TP_STRUCT *const tp) { return real_tpActiveDepth(tp); }
 int tpGetMotionType(TP_STRUCT *const tp) { return real_tpGetMotionType(tp); }
 
 void tpMotFunctions(void (*dio)(int, char), void (*aio)(int, double), void (*unlock)(int, int),
@@ -609,7 +644,7 @@ static int make_ring(void) {
     memset(ring, 0, sizeof *ring);
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
-    ring->session = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+    ring->session = ((uint64_t)now.tv_sec * 1000u + (uint64_t)now.tv_nsec / 1000000u) & 0xffff;
     ring->bytes = sizeof *ring;
     ring->segments = FEELER_RING_SEGMENTS;
     ring->version = FEELER_RING_VERSION;
