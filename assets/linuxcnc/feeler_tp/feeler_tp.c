@@ -361,7 +361,10 @@ static void release_permitted(TP_STRUCT *tp) {
         int const result = pass_on(tp, c);
         if (is_motion(c)) {
             /* 0: queued. Positive: the planner found no length in it. */
-            if (result < 0) return fail(tp, c, result);
+            if (result < 0) {
+                fail(tp, c, result);
+                return;
+            }
             ++motions;
             --motion_count;
             was_stopped = 0;

@@ -1,0 +1,471 @@
+/* Tests feeler_tp with the real planner of LinuxCNC (tpmod.so), without the rest of LinuxCNC: what
+ * motmod calls in each servo cycle is called here. */
+#include "assets/linuxcnc/feeler_tp/feeler_tp.c"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* --- what LinuxCNC's HAL and RTAPI would do ----------------------------------------------------*/
+
+void rtapi_print_msg(msg_level_t level, char const *format, ...) {
+    (void)level;
+    (void)format;
+}
+void rtapi_print(char const *format, ...) { (void)format; }
+long long rtapi_get_time(void) { return 0; }
+int hal_init(char const *name) {
+    (void)name;
+    return 1;
+}
+int hal_exit(int id) {
+    (void)id;
+    return 0;
+}
+int hal_ready(int id) {
+    (void)id;
+    return 0;
+}
+void *hal_malloc(long size) { return calloc(1, (size_t)size); }
+int hal_pin_s32_newf(hal_pin_dir_t direction, hal_s32_t **pin, int id, char const *format, ...) {
+    (void)direction, (void)id, (void)format;
+    *pin = calloc(1, 8);
+    return 0;
+}
+int hal_pin_bit_newf(hal_pin_dir_t direction, hal_bit_t **pin, int id, char const *format, ...) {
+    (void)direction, (void)id, (void)format;
+    *pin = calloc(1, 8);
+    return 0;
+}
+static void *shared;
+int rtapi_shmem_new(int key, int id, unsigned long size) {
+    (void)key, (void)id;
+    shared = calloc(1, size);
+    return 1;
+}
+int rtapi_shmem_getptr(int id, void **address) {
+    (void)id;
+    *address = shared;
+    return 0;
+}
+int rtapi_shmem_delete(int id, int module) {
+    (void)id, (void)module;
+    return 0;
+}
+
+static int output_line; /* in which digital output 0 was set last */
+static struct state_tag_t tag;
+static TP_STRUCT tp;
+static emcmot_status_t motion;
+static emcmot_config_t config;
+
+static void set_output(int index, char value) {
+    (void)index, (void)value;
+    output_line = real_tpGetExecTag(&tp).fields[GM_FIELD_LINE_NUMBER];
+}
+static void set_analog(int index, double value) { (void)index, (void)value; }
+static void unlock(int axis, int is_unlocked) { (void)axis, (void)is_unlocked; }
+static int is_unlocked(int axis) {
+    (void)axis;
+    return 1;
+}
+static double velocity_limit(int axis) {
+    (void)axis;
+    return 100.0;
+}
+static double acceleration_limit(int axis) {
+    (void)axis;
+    return 1000.0;
+}
+
+/* --- helpers -----------------------------------------------------------------------------------*/
+
+static int failures;
+static void expect(int condition, char const *what, int line) {
+    if (condition) return;
+    ++failures;
+    printf("line %d: %s\n", line, what);
+}
+#define EXPECT(condition) expect((condition), #condition, __LINE__)
+
+static void cycle(int count) {
+    while (count-- > 0) {
+        tpRunCycle(&tp, 1000000);
+        tpQueueDepth(&tp);
+        tpActiveDepth(&tp);
+        motion.id = tpGetExecId(&tp);
+    }
+}
+
+static EmcPose at(double x, double y, double z) {
+    EmcPose pose;
+    memset(&pose, 0, sizeof pose);
+    pose.tran.x = x, pose.tran.y = y, pose.tran.z = z;
+    return pose;
+}
+
+static int line_number;
+static int add_line(double x, double y, double z) {
+    tpSetId(&tp, ++line_number);
+    tag.fields[GM_FIELD_LINE_NUMBER] = line_number;
+    return tpAddLine(&tp, at(x, y, z), 2, 50.0, 100.0, 1000.0, 0xff, 0, -1, tag);
+}
+static int add_line_at_speed(double x) {
+    tpSetId(&tp, ++line_number);
+    tag.fields[GM_FIELD_LINE_NUMBER] = line_number;
+    return tpAddLine(&tp, at(x, 0, 0), 2, 50.0, 100.0, 1000.0, 0xff, 1, -1, tag);
+}
+static int add_tap(double z) {
+    tpSetId(&tp, ++line_number);
+    return tpAddRigidTap(&tp, at(0, 0, z), 10.0, 20.0, 1000.0, 0xff, 1.0, tag);
+}
+
+/* Plays the guard, which has read everything. */
+static void permit(uint64_t number) {
+    feeler_store(&ring->read, ring->written);
+    feeler_store(&ring->permitted, feeler_permit(ring->session, number));
+}
+
+static double x_of(void) {
+    EmcPose pose;
+    tpGetPos(&tp, &pose);
+    return pose.tran.x;
+}
+static struct feeler_segment const *last_segment(void) {
+    return &ring->segment[ring->written % FEELER_RING_SEGMENTS];
+}
+
+static void start(void) {
+    EXPECT(rtapi_app_main() == 0);
+    config.numSpindles = 1;
+    config.numDIO = config.numAIO = 4;
+    config.maxFeedScale = 1.2;
+    config.arcBlendEnable = config.arcBlendFallbackEnable = 1;
+    config.arcBlendOptDepth = 50;
+    config.arcBlendGapCycles = 4;
+    config.arcBlendRampFreq = 100;
+    config.arcBlendTangentKinkRatio = 0.1;
+    motion.net_feed_scale = 1.0;
+    motion.spindle_status[0].at_speed = 1;
+    tpMotFunctions(set_output, set_analog, unlock, is_unlocked, velocity_limit,
+                   acceleration_limit);
+    tpMotData(&motion, &config);
+    EXPECT(tpCreate(&tp, DEFAULT_TC_QUEUE_SIZE, 1) == 0);
+    tpSetCycleTime(&tp, 0.001);
+    tpSetVmax(&tp, 100.0, 100.0);
+    tpSetVlimit(&tp, 100.0);
+    tpSetAmax(&tp, 1000.0);
+    EmcPose const origin = at(0, 0, 0);
+    tpSetPos(&tp, &origin);
+    cycle(3);
+}
+
+/* --- cases -------------------------------------------------------------------------------------*/
+
+static void moves_only_as_far_as_permitted(void) {
+    for (int i = 1; i <= 20; ++i) EXPECT(add_line(10.0 * i, 0, 0) == TP_ERR_OK);
+    cycle(500);
+    EXPECT(x_of() == 0.0 && !tpIsDone(&tp) && tpQueueDepth(&tp) == 20);
+    EXPECT(*pins->holding && *pins->line == 1);
+    for (uint64_t number = 1; number <= 20; number += 3) {
+        permit(number);
+        cycle(3000);
+        EXPECT(fabs(x_of() - 10.0 * (double)number) < 1e-9);
+        EXPECT(ring->made == number);
+    }
+    permit(21); /* a motion that does not exist */
+    cycle(3000);
+    EXPECT(ring->released == 19);
+    permit(20);
+    cycle(3000);
+    EXPECT(fabs(x_of() - 200.0) < 1e-9 && tpIsDone(&tp) && !*pins->holding);
+}
+
+/* Never beyond what is permitted, in any cycle, at any speed and with any blending. */
+static void never_passes_the_permit(void) {
+    srand(1);
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.0);
+    double end[400] = {0};
+    uint64_t permitted = 0;
+    for (int i = 1; i < 400; ++i) {
+        end[i] = end[i - 1] + 0.05 + rand() % 100 / 20.0;
+        EXPECT(add_line(end[i], rand() % 3, 0) == TP_ERR_OK);
+        motion.net_feed_scale = 0.2 + rand() % 100 / 100.0;
+        for (int j = rand() % 30; j > 0; --j) {
+            cycle(1);
+            EXPECT(x_of() <= end[permitted] + 1e-9);
+        }
+        if (rand() % 3 == 0) {
+            permitted = (uint64_t)(permitted + 1 + (uint64_t)rand() % ((uint64_t)i - permitted + 1));
+            if (permitted > (uint64_t)i) permitted = (uint64_t)i;
+            permit(permitted);
+        }
+    }
+    motion.net_feed_scale = 1.0;
+    permit(399);
+    for (int i = 0; i < 200000 && !tpIsDone(&tp); ++i) cycle(1);
+    EXPECT(tpIsDone(&tp) && ring->made == 399);
+}
+
+static void ignores_permits_of_another_session(void) {
+    add_line(10, 0, 0);
+    feeler_store(&ring->permitted, feeler_permit(ring->session ^ 1, 1));
+    cycle(500);
+    EXPECT(x_of() == 0.0);
+    permit(1);
+    cycle(3000);
+    EXPECT(x_of() == 10.0);
+}
+
+static void tells_where_an_abort_ended_a_motion(void) {
+    add_line(10, 0, 0);
+    add_line(100, 0, 0);
+    add_line(100, 50, 0);
+    permit(3);
+    while (x_of() < 40.0) cycle(1);
+    tpAbort(&tp);
+    cycle(500);
+    EXPECT(tpIsDone(&tp) && ring->made < 2 && ring->dropped == 3);
+    double const stopped = x_of();
+    add_line(20, 0, 0);
+    EXPECT(last_segment()->follows == 2 && last_segment()->follows_part);
+    EXPECT(last_segment()->stopped_at[0] == stopped && last_segment()->from[0] == stopped);
+    /* Dropped before the guard has read it, so the next one must say the same. */
+    tpAbort(&tp);
+    cycle(10);
+    add_line(30, 0, 0);
+    EXPECT(last_segment()->follows == 2 && last_segment()->follows_part);
+    permit(5);
+    cycle(3000);
+    EXPECT(x_of() == 30.0 && ring->made == 5);
+    add_line(40, 0, 0);
+    EXPECT(last_segment()->follows == 5 && !last_segment()->follows_part);
+}
+
+/* A motion that waits for the spindle has not begun, though the planner has it. */
+static void counts_nothing_that_waits_for_the_spindle(void) {
+    add_line(10, 0, 0);
+    permit(1);
+    cycle(3000);
+    tpClear(&tp);
+    EmcPose const here = at(10, 0, 0);
+    tpSetPos(&tp, &here);
+    motion.spindle_status[0].at_speed = 0;
+    add_line_at_speed(60);
+    permit(2);
+    cycle(100);
+    EXPECT(ring->made == 1 && x_of() == 10.0);
+    tpAbort(&tp);
+    cycle(10);
+    add_line(20, 0, 0);
+    EXPECT(ring->made == 1 && last_segment()->follows == 1);
+}
+
+static void counts_no_thread_that_was_aborted(void) {
+    tpSetSpindleSync(&tp, 0, 1.0, 0);
+    add_line(0, 0, -20);
+    tpSetSpindleSync(&tp, 0, 0, 0);
+    permit(1);
+    cycle(2);
+    motion.spindle_status[0].spindle_index_enable = 0;
+    motion.spindle_status[0].direction = 1;
+    for (int i = 0; i < 500; ++i) {
+        motion.spindle_status[0].spindleRevs += 0.01;
+        cycle(1);
+    }
+    tpAbort(&tp);
+    cycle(500);
+    add_line(10, 0, 0);
+    EXPECT(ring->made == 0 && last_segment()->follows == 0);
+}
+
+static void counts_no_motion_that_the_planner_refuses(void) {
+    EXPECT(add_tap(-10) == TP_ERR_OK); /* not synchronized: refused */
+    permit(1);
+    cycle(5);
+    EXPECT(ring->made == 0 && tpIsDone(&tp));
+    EXPECT(add_line(10, 0, 0) == TP_ERR_FAIL); /* so that LinuxCNC ends the program */
+    tpAbort(&tp);
+    cycle(5);
+    EXPECT(add_line(10, 0, 0) == TP_ERR_OK);
+    EXPECT(last_segment()->follows == 0);
+    permit(ring->written);
+    cycle(3000);
+    EXPECT(x_of() == 10.0);
+}
+
+static void keeps_a_pause_while_motions_wait(void) {
+    add_line(10, 0, 0);
+    add_line(20, 0, 0);
+    permit(1);
+    cycle(3000);
+    tpPause(&tp);
+    cycle(10);
+    permit(2);
+    cycle(500);
+    EXPECT(x_of() == 10.0);
+    tpResume(&tp);
+    cycle(3000);
+    EXPECT(x_of() == 20.0);
+}
+
+static void refuses_motions_while_an_abort_brakes(void) {
+    add_line(100, 0, 0);
+    permit(1);
+    cycle(200);
+    tpAbort(&tp);
+    EXPECT(add_line(100, 10, 0) == TP_ERR_FAIL);
+    cycle(500);
+    EXPECT(add_line(0, 0, 0) == TP_ERR_OK);
+}
+
+static void ends_synchronization_with_an_abort(void) {
+    tpSetSpindleSync(&tp, 0, 1.0, 0);
+    add_line(0, 0, -20);
+    tpSetSpindleSync(&tp, 0, 0, 0);
+    cycle(10);
+    tpAbort(&tp);
+    cycle(10);
+    add_line(10, 0, 0);
+    EXPECT(last_segment()->per_turn == 0.0);
+    permit(ring->written);
+    cycle(3000);
+    EXPECT(x_of() == 10.0);
+
+    tpSetSpindleSync(&tp, 0, 1.0, 0); /* aborted before it is switched off */
+    add_line(10, 0, -20);
+    tpAbort(&tp);
+    cycle(10);
+    EXPECT(!tp.synchronized);
+}
+
+static void stops_at_external_offsets(void) {
+    add_line(100, 0, 0);
+    add_line(200, 0, 0);
+    permit(2);
+    while (x_of() < 20.0) cycle(1);
+    motion.eoffset_pose.tran.z = -5.0;
+    cycle(500);
+    EXPECT(tpIsDone(&tp) && x_of() < 30.0 && ring->external == 1);
+    add_line(0, 0, 0);
+    permit(ring->written);
+    cycle(500);
+    EXPECT(x_of() > 10.0);
+    motion.eoffset_pose.tran.z = 0.0;
+    cycle(3000);
+    EXPECT(x_of() == 0.0);
+}
+
+static void keeps_outputs_with_their_motions(void) {
+    add_line(10, 0, 0);
+    tpSetDout(&tp, 0, 1, 0);
+    add_line(20, 0, 0);
+    add_line(30, 0, 0);
+    permit(1);
+    cycle(3000);
+    EXPECT(output_line == 0);
+    permit(3);
+    cycle(3000);
+    EXPECT(output_line == 2);
+}
+
+static void keeps_path_modes_with_their_motions(void) {
+    add_line(10, 0, 0);
+    tpSetTermCond(&tp, TC_TERM_COND_STOP, 0.0);
+    add_line(20, 0, 0);
+    EXPECT(last_segment()->blending == FEELER_EXACT_STOP);
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.25);
+    add_line(30, 0, 0);
+    EXPECT(last_segment()->blending == FEELER_BLENDED && last_segment()->tolerance == 0.25);
+    cycle(10);
+    EXPECT(tp.termCond == TC_TERM_COND_PARABOLIC && tp.tolerance == 0.0);
+    permit(2);
+    cycle(1);
+    EXPECT(tp.termCond == TC_TERM_COND_PARABOLIC && tp.tolerance == 0.25);
+    tpSetTermCond(&tp, TC_TERM_COND_EXACT, 0.0);
+    tpAbort(&tp); /* the mode stays, as it does in the planner */
+    cycle(500);
+    EXPECT(tp.termCond == TC_TERM_COND_EXACT);
+}
+
+/* While a motion is made, the one before it may still end in a blend. */
+static void counts_a_motion_once_the_next_one_is_over(void) {
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.0);
+    for (int i = 1; i <= 4; ++i) add_line(10.0 * i, i % 2, 0);
+    permit(4);
+    for (int i = 0; i < 20000 && !tpIsDone(&tp); ++i) {
+        cycle(1);
+        uint64_t const completed = (uint64_t)(x_of() / 10.0 + 1e-9);
+        EXPECT(ring->made <= completed);
+        EXPECT(tpGetExecTag(&tp).packed_flags >> 32 == 0);
+    }
+    EXPECT(ring->made == 4);
+}
+
+static void begins_the_motion_after_a_tap_where_that_began(void) {
+    tpSetSpindleSync(&tp, 0, 1.0, 0);
+    EXPECT(add_tap(-10) == TP_ERR_OK);
+    tpSetSpindleSync(&tp, 0, 0, 0);
+    add_line(10, 0, 0);
+    EXPECT(last_segment()->from[2] == 0.0);
+}
+
+static void runs_only_forwards(void) {
+    EXPECT(tpSetRunDir(&tp, TC_DIR_REVERSE) != TP_ERR_OK);
+    EXPECT(tpSetRunDir(&tp, TC_DIR_FORWARD) == TP_ERR_OK);
+}
+
+static void is_full_before_the_ring_is(void) {
+    int count = 0;
+    while (!tcqFull(&tp.queue) && count < 10000) {
+        EXPECT(add_line(++count, 0, 0) == TP_ERR_OK);
+        cycle(1);
+    }
+    EXPECT(count > 1000 && count < (int)FEELER_RING_SEGMENTS);
+    for (int i = 0; i < 10000; ++i) {
+        if (i % 50 == 0) {
+            tpAbort(&tp);
+            cycle(5);
+        }
+        add_line(count + 2.0 + i, 0, 0);
+    }
+    EXPECT(ring->written <= FEELER_RING_SEGMENTS); /* nothing was read */
+    EXPECT(add_line(-5, 0, 0) == TP_ERR_FAIL);
+}
+
+int main(int count, char **words) {
+    struct {
+        char const *name;
+        void (*run)(void);
+    } const cases[] = {
+#define CASE(name) {#name, name}
+        CASE(moves_only_as_far_as_permitted),
+        CASE(never_passes_the_permit),
+        CASE(ignores_permits_of_another_session),
+        CASE(tells_where_an_abort_ended_a_motion),
+        CASE(counts_nothing_that_waits_for_the_spindle),
+        CASE(counts_no_thread_that_was_aborted),
+        CASE(counts_no_motion_that_the_planner_refuses),
+        CASE(keeps_a_pause_while_motions_wait),
+        CASE(refuses_motions_while_an_abort_brakes),
+        CASE(ends_synchronization_with_an_abort),
+        CASE(stops_at_external_offsets),
+        CASE(keeps_outputs_with_their_motions),
+        CASE(keeps_path_modes_with_their_motions),
+        CASE(counts_a_motion_once_the_next_one_is_over),
+        CASE(begins_the_motion_after_a_tap_where_that_began),
+        CASE(runs_only_forwards),
+        CASE(is_full_before_the_ring_is),
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        if (count == 2 && strcmp(words[1], cases[i].name) != 0) continue;
+        if (count != 2) {
+            puts(cases[i].name);
+            continue;
+        }
+        start();
+        cases[i].run();
+        return failures == 0 ? 0 : 1;
+    }
+    return count == 2 ? 2 : 0;
+}
