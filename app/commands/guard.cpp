@@ -1,5 +1,6 @@
 #include "app/guard/guard.h"
 
+#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -34,7 +35,7 @@ constexpr auto pause = std::chrono::microseconds(100);
 
 struct GuardOptions {
     std::string setup, ini, log, status;
-    double tolerance = 0.01;
+    double tolerance = 0.01, feed_tolerance = 0.1;
     double wait = 60.0;
 };
 
@@ -44,8 +45,15 @@ core::Result<SetupFile> complete_setup(const std::string& path) {
     const auto lacks = [&](const std::string& what) {
         return core::fail_file(path, "the guard needs a set-up that states " + what);
     };
+    const auto has = [&](const std::string& what) {
+        return core::fail_file(path, "the guard does not follow " + what);
+    };
     if (setup.needs_stock || setup.is_partial) return lacks("the stock");
-    if (setup.setup.tools.empty()) return lacks("the tools with their sizes");
+    if (setup.setup.tools.empty()) return lacks("the tools with their sizes, under [[tool]]");
+    if (!setup.partial_tools.empty()) return lacks("all sizes of its tools");
+    if (!setup.assumed.empty()) return lacks("what it calls assumed");
+    if (!setup.setup.fixture_moves.empty())
+        return has("fixtures that are moved ([[fixture.move]])");
     if (setup.infers_frame || setup.offsets_set.empty())
         return lacks("the work offsets in machine coordinates");
     if (!setup.offsets_of_bodies.empty())
@@ -56,11 +64,28 @@ core::Result<SetupFile> complete_setup(const std::string& path) {
 /// The ini file, if its machine is one that the guard can follow.
 core::Result<IniFile> known_ini(const std::string& path) {
     FEELER_TRY(IniFile ini, read_ini(path));
-    if (is_known_kinematics(ini.kinematics))
+    if (ini.kinematics != "trivkins")
         return core::fail_file(path, fmt::format("the guard does not follow the kinematics {}: it "
-                                                 "needs a machine whose axes are its joints",
+                                                 "needs a machine whose axes are its joints "
+                                                 "(KINEMATICS = trivkins)",
                                                  ini.kinematics));
     return ini;
+}
+
+/// Gives the axes the speeds and accelerations with which LinuxCNC plans: corners of rapids depend
+/// on them.
+void take_speeds(core::Machine& machine, const IniFile& ini, double unit) {
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        const char letter = static_cast<char>(std::tolower(core::axis_letters[i]));
+        const double scale = core::is_rotary(i) ? 1.0 : unit;
+        const auto value = [&](const char* name) -> std::optional<double> {
+            const auto found = ini.values.find(fmt::format("_ini[axis_{}]{}", letter, name));
+            if (found == ini.values.end()) return {};
+            return found->second * scale;
+        };
+        if (const auto speed = value("max_velocity")) machine.axes[i].rapid = 60.0 * *speed;
+        if (const auto most = value("max_acceleration")) machine.axes[i].acceleration = *most;
+    }
 }
 
 /// Waits for LinuxCNC to load feeler_tp.
@@ -132,15 +157,15 @@ private:
 class GuardRun {
 public:
     GuardRun(const GuardOptions& options, const SetupFile& setup, feeler_ring& ring,
-             ControlStatus status, double unit, double most_override)
+             ControlStatus status, double unit)
         : options_(options),
           setup_(setup),
           ring_(ring),
           status_(std::move(status)),
-          guard_(setup.setup, ring, unit, most_override),
+          guard_(setup.setup, ring, unit, options.feed_tolerance),
           unit_(unit) {}
 
-    core::Result<void> open_log();
+    void open_log();
     void run();
     uint64_t refused() const { return guard_.refused(); }
     std::string summary() const;
@@ -148,7 +173,8 @@ public:
 private:
     static constexpr const char* awaits_status = "the status of LinuxCNC is awaited.";
 
-    std::string objection();
+    std::string objection(const feeler_segment& motion);
+    bool has_status();
     void write_log();
     void tell(const std::string& text);
 
@@ -160,13 +186,16 @@ private:
     std::optional<MotionLog> log_;
     double unit_ = 1.0;
     bool was_idle_ = true, said_disk_ = false;
-    int64_t log_written_ = 0; // milliseconds
+    feeler_segment asked_for_{}; // the motion for which the status was asked for anew
+    int64_t log_written_ = 0, status_started_ = 0; // milliseconds
 };
 
-core::Result<void> GuardRun::open_log() {
-    if (options_.log.empty()) return {};
-    FEELER_TRY(log_, MotionLog::begin(options_.log, setup_));
-    return {};
+void GuardRun::open_log() {
+    if (options_.log.empty()) return;
+    if (auto log = MotionLog::begin(options_.log, setup_))
+        log_.emplace(*std::move(log));
+    else
+        tell("Feeler: the log cannot be written: " + options_.log);
 }
 
 void GuardRun::tell(const std::string& text) {
@@ -174,23 +203,37 @@ void GuardRun::tell(const std::string& text) {
     // LinuxCNC's messages hold 255 characters.
     constexpr size_t most = 250;
     for (std::string rest = text; !rest.empty();) {
-        size_t end = rest.size() <= most ? rest.size() : rest.rfind(' ', most);
-        if (end == std::string::npos || end == 0) end = most;
+        const size_t blank = rest.size() <= most ? rest.size() : rest.rfind(' ', most);
+        const size_t end = blank == std::string::npos || blank == 0 ? most : blank;
         status_.say(rest.substr(0, end));
-        rest.erase(0, end + 1);
+        rest.erase(0, blank == end ? end + 1 : end);
     }
 }
 
-std::string GuardRun::objection() {
+/// Whether the program that asks for the status runs. It is started again if it has ended.
+bool GuardRun::has_status() {
+    constexpr int64_t interval = 1000; // milliseconds
+    if (status_.is_open()) return true;
+    const int64_t now = core::platform::steady_milliseconds();
+    if (now - status_started_ < interval) return false;
+    status_started_ = now;
+    auto anew = ControlStatus::start(options_.status);
+    if (!anew) return false;
+    status_ = *std::move(anew);
+    return true;
+}
+
+std::string GuardRun::objection(const feeler_segment& motion) {
     status_.look();
-    if (!status_.is_open())
-        return "the status of LinuxCNC is not known (feeler_status.py has ended).";
-    // Before the first motion after a pause, as after touching off, only a fresh status counts.
-    if (was_idle_) {
+    if (!has_status()) return "the status of LinuxCNC is not known (feeler_status.py has ended).";
+    // Only a fresh status counts before the first motion after a pause, as after touching off, and
+    // before one with another tool or work offset.
+    if (was_idle_ || motion.tool != asked_for_.tool || motion.offset != asked_for_.offset) {
         was_idle_ = false;
+        asked_for_ = motion;
         status_.ask_anew();
     }
-    if (!status_.is_fresh() || !status_.state()) return GuardRun::awaits_status;
+    if (!status_.is_fresh() || !status_.state()) return awaits_status;
     return difference(setup_, *status_.state(), unit_, options_.tolerance);
 }
 
@@ -205,7 +248,7 @@ void GuardRun::write_log() {
 }
 
 void GuardRun::run() {
-    guard_.objection = [this] { return objection(); };
+    guard_.objection = [this](const feeler_segment& motion) { return objection(motion); };
     guard_.tell = [this](const std::string& text) { tell(text); };
     guard_.after_motion = [this](const feeler_segment& motion) {
         if (log_) log_->add(motion);
@@ -241,19 +284,19 @@ std::string GuardRun::summary() const {
 }
 
 core::Result<ExitCode> guard_machine(const GuardOptions& options) {
-    FEELER_TRY(const SetupFile setup, complete_setup(options.setup));
+    FEELER_TRY(SetupFile setup, complete_setup(options.setup));
     FEELER_TRY(const IniFile ini, known_ini(options.ini));
     const double unit = ini.machine_unit == gcode::LengthUnit::inch ? 25.4 : 1.0;
-    const auto stated = ini.values.find("_ini[display]max_feed_override");
-    const double most_override = stated == ini.values.end() ? 1.0 : std::max(1.0, stated->second);
+    take_speeds(setup.setup.machine, ini, unit);
     FEELER_TRY(feeler_ring* const ring, awaited_ring(options.wait));
     if (!claim(*ring))
         return core::fail(core::ErrorCode::unsupported,
                           fmt::format("another guard runs: process {}", ring->process));
     FEELER_TRY(ControlStatus status, ControlStatus::start(options.status));
-    GuardRun run(options, setup, *ring, std::move(status), unit, most_override);
-    if (auto opened = run.open_log(); !opened) return tl::unexpected(opened.error());
+    GuardRun run(options, setup, *ring, std::move(status), unit);
+    run.open_log();
     print_note("watching LinuxCNC\n");
+    for (const std::string& assumption : setup.assumptions) print_note(assumption + "\n");
     run.run();
     print_note(run.summary());
     return run.refused() == 0 ? ExitCode::clear : ExitCode::findings;
@@ -285,6 +328,11 @@ void add_guard(CLI::App& cli, ExitCode& exit_code) {
                     "How far the control's work offset and tool length may differ from the set-up, "
                     "mm or degrees")
         ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    command
+        .add_option("--feed-tolerance", options->feed_tolerance,
+                    "Tolerance with which LinuxCNC blends feeds where a program states none, mm")
+        ->check(CLI::Range(0.001, 10.0))
         ->capture_default_str();
     add_path(command, "--log", options->log,
              "Write what the machine did as a program, which feeler view shows");

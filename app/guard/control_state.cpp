@@ -37,7 +37,7 @@ core::Result<ControlState> read_control_state(std::string_view line) {
 std::string difference(const SetupFile& setup, const ControlState& control, double unit,
                        double tolerance) {
     if (control.work_offset < 1 || control.work_offset > 9)
-        return "LinuxCNC uses no work offset that is known.";
+        return "LinuxCNC does not say which work offset it uses: select one, for example by G54.";
     const auto index = static_cast<size_t>(control.work_offset - 1);
     const std::string name = gcode::name_of_offset(index);
     if (!states(setup, index))

@@ -59,10 +59,12 @@ bool claim(feeler_ring& ring) {
                                        __ATOMIC_ACQUIRE);
 }
 
-Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double most_override)
-    : ring_(ring), check_(setup, most_override), unit_(unit) {
+Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance)
+    : ring_(ring), check_(setup), unit_(unit) {
+    ring_.feed_tolerance = feed_tolerance / unit;
     cleared_ = feeler_load(&ring_.cleared);
     is_latched_ = feeler_load(&ring_.latched) != 0;
+    if (is_latched_) check_.refuse_until_drop();
     check_.after_motion = [this](const feeler_segment& motion) {
         if (after_motion) after_motion(motion);
     };
@@ -90,8 +92,8 @@ void Guard::follow_operator() {
     if (tell) tell("Feeler: the violation is cleared.");
 }
 
-bool Guard::may_permit() {
-    std::string why = objection ? objection() : std::string();
+bool Guard::may_permit(const feeler_segment& motion) {
+    std::string why = objection ? objection(motion) : std::string();
     const int64_t now = core::platform::steady_milliseconds();
     if (why != reason_) {
         reason_ = why;
@@ -137,7 +139,7 @@ bool Guard::step() {
     is_disturbed_ = is_disturbed_ || motion.number != next;
     if (is_disturbed_) return false;
     has_begun_ = has_begun_ || can_begin();
-    if (!is_dropped && (!has_begun_ || !may_permit())) return false;
+    if (!is_dropped && (!has_begun_ || !may_permit(motion))) return false;
     if (!is_dropped) judge(motion);
     feeler_store(&ring_.read, next);
     return true;

@@ -30,11 +30,12 @@ class Guard {
 public:
     /// The ring must outlive the object. It is taken over where an earlier guard has left it: the
     /// motions that wait are checked. `unit`: mm per unit of the machine's lengths.
-    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double most_override);
+    /// `feed_tolerance`: with which feeds are blended where a program states none, mm.
+    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance);
 
-    /// Why no motion may be permitted now, such as a work offset that differs from the set-up;
-    /// empty if there is no reason. Asked before each motion, which waits as long as there is one.
-    std::function<std::string()> objection;
+    /// Why a motion may not be permitted now, such as a work offset that differs from the set-up;
+    /// empty if there is no reason. The motion waits as long as there is one.
+    std::function<std::string(const feeler_segment&)> objection;
     /// For the operator: what holds the machine, and that it is over.
     std::function<void(const std::string&)> tell;
     /// After each motion that was refused, in mm.
@@ -60,7 +61,7 @@ public:
 
 private:
     void follow_operator();
-    bool may_permit();
+    bool may_permit(const feeler_segment& motion);
     bool can_begin() const;
     void judge(const feeler_segment& motion);
     void permit(uint64_t number);

@@ -16,7 +16,7 @@ constexpr double same_place = 1e-6;        // mm or degrees
 constexpr double retreat_tolerance = 0.01; // mm
 constexpr double full_turn = 1e-6;         // an arc that ends this close to its start, radians
 
-core::AxisValues values_of(const double (&numbers)[core::axis_count]) {
+core::AxisValues axis_values(const double (&numbers)[core::axis_count]) {
     core::AxisValues values;
     std::copy(std::begin(numbers), std::end(numbers), values.begin());
     return values;
@@ -36,7 +36,7 @@ core::AxisPosition position_of(const core::AxisValues& values, const core::Machi
     return position;
 }
 
-core::AxisValues values_of(const core::AxisPosition& position) {
+core::AxisValues known_values(const core::AxisPosition& position) {
     core::AxisValues values{};
     for (size_t i = 0; i < core::axis_count; ++i) values[i] = position[i].value_or(0.0);
     return values;
@@ -74,7 +74,7 @@ double distance_from_axis(const core::Vec3& point, const core::Vec3& centre, int
 /// the normal of the motion may point along or against.
 core::ArcPath arc_of(const feeler_segment& motion, int normal, const core::AxisValues& to) {
     const core::Vec3 centre = vector_of(motion.centre);
-    const core::Vec3 from = point_of(values_of(motion.from)), end = point_of(to);
+    const core::Vec3 from = point_of(axis_values(motion.from)), end = point_of(to);
     const double whole = 2.0 * std::numbers::pi;
     // Counted about the motion's own normal, or clockwise about it: LinuxCNC's pmCircleInit.
     const bool is_reversed = motion.normal[normal] < 0.0, is_clockwise = motion.turns < 0;
@@ -91,29 +91,26 @@ double distance_to_segment(const core::Vec3& point, const core::Vec3& a, const c
     return glm::length(point - (a + t * along));
 }
 
-/// How far LinuxCNC may leave the path at the end of a feed that is blended without a tolerance: it
-/// begins the next motion while this one brakes, with half the acceleration, from its full feed.
-double most_blend(const feeler_segment& motion, double most_override) {
-    double feed = motion.feed * most_override;
-    // Overrides of the spindle are at most 200 % in LinuxCNC unless its ini file says more.
-    if (motion.per_turn > 0.0) feed = motion.per_turn * 2.0 * std::abs(motion.speed) / 60.0;
-    feed = std::min(feed, motion.most_feed);
-    return motion.acceleration > 0.0 ? feed * feed / motion.acceleration : core::infinity;
-}
-
-core::PathModeChange path_mode_of(const feeler_segment& motion, double most_override) {
+core::PathModeChange path_mode_of(const feeler_segment& motion) {
     core::PathModeChange mode;
     mode.blending = motion.blending == FEELER_EXACT_STOP   ? core::Blending::exact_stop
                     : motion.blending == FEELER_EXACT_PATH ? core::Blending::exact_path
                                                            : core::Blending::continuous;
     if (mode.blending != core::Blending::continuous) return mode;
-    if (motion.tolerance > 0.0) {
-        mode.tolerance = mode.rapid_tolerance = motion.tolerance;
-        return mode;
-    }
-    mode.tolerance = motion.purpose == FEELER_RAPID ? 0.0 : most_blend(motion, most_override);
-    mode.rapids_keep_speed = true;
+    // Without a tolerance, which feeds always have, as far as speeds demand.
+    mode.tolerance = motion.tolerance;
+    if (motion.tolerance > 0.0)
+        mode.rapid_tolerance = motion.tolerance;
+    else
+        mode.rapids_keep_speed = true;
     return mode;
+}
+
+/// The tool in the spindle; empty if there is none.
+std::optional<core::ToolNumber> tool_of(const feeler_segment& motion, const core::Setup& setup) {
+    const core::ToolNumber number{motion.tool};
+    if (motion.tool == 0 && !setup.tools.contains(number)) return {};
+    return number;
 }
 
 core::SpindleChange spindle_of(const feeler_segment& motion) {
@@ -121,7 +118,7 @@ core::SpindleChange spindle_of(const feeler_segment& motion) {
     spindle.direction = motion.turns_on == 1   ? core::SpindleDirection::clockwise
                         : motion.turns_on == 2 ? core::SpindleDirection::counterclockwise
                                                : core::SpindleDirection::stopped;
-    if (motion.turns_on != 0) spindle.speed = std::max(std::abs(motion.speed), 1.0);
+    if (motion.turns_on != 0) spindle.speed = std::max(motion.speed, 1.0);
     return spindle;
 }
 
@@ -131,8 +128,8 @@ core::Motion line_of(const feeler_segment& motion, const core::Machine& machine)
                         || motion.purpose == FEELER_INDEXER
                     ? core::MotionKind::rapid
                     : core::MotionKind::feed;
-    line.from = position_of(values_of(motion.from), machine);
-    line.to = position_of(values_of(motion.to), machine);
+    line.from = position_of(axis_values(motion.from), machine);
+    line.to = position_of(axis_values(motion.to), machine);
     line.style = core::RapidStyle::straight;
     line.stops_at_contact = motion.purpose == FEELER_PROBE;
     if (line.kind == core::MotionKind::feed) line.feed = 60.0 * motion.feed;
@@ -159,8 +156,19 @@ bool is_clear(const core::BlockResult& result) {
     return result.checked && result.verdict == core::Verdict::clear && !has_error(result);
 }
 
-std::string tool_text(int32_t tool) {
-    return tool == 0 ? std::string("no tool") : fmt::format("tool {}", tool);
+/// Whether only Z moves, upwards.
+bool is_straight_up(const feeler_segment& motion) {
+    for (size_t i = 0; i < core::axis_count; ++i)
+        if (i != 2 && std::abs(motion.to[i] - motion.from[i]) > same_place) return false;
+    return motion.shape == FEELER_LINE && motion.to[2] >= motion.from[2];
+}
+
+/// Brings a run to a place without a motion.
+void put_at(core::SimulatorState& state, const core::AxisPosition& position) {
+    state.position = position;
+    state.spread = {};
+    state.corners.last = {};
+    state.memory.bounds.clear();
 }
 
 } // namespace
@@ -171,21 +179,21 @@ bool is_after_drop(const feeler_segment& motion) {
 
 feeler_segment in_mm(feeler_segment motion, double unit) {
     const auto scale = [&](double& length) { length *= unit; };
-    for (double(*values)[core::axis_count] :
-         {&motion.from, &motion.to, &motion.stopped_at, &motion.tool_offset})
+    for (double(*values)[core::axis_count] : {&motion.from, &motion.to, &motion.stopped_at})
         for (size_t i = 0; i < core::axis_count; ++i)
             if (!core::is_rotary(i)) scale((*values)[i]);
     for (double& value : motion.centre) scale(value);
     scale(motion.feed);
-    scale(motion.most_feed);
-    scale(motion.per_turn);
-    scale(motion.acceleration);
     scale(motion.tolerance);
     return motion;
 }
 
-LiveCheck::LiveCheck(const core::Setup& setup, double most_override)
-    : setup_(setup), thorough_(setup), most_override_(most_override) {
+LiveCheck::LiveCheck(const core::Setup& setup) : setup_(setup) {
+    setup_.search_limit = core::search_limit_of(setup);
+    // What LinuxCNC does at corners is in the ring.
+    setup_.machine.corner_tolerance = 0.0;
+    setup_.machine.rapid_corner_tolerance.reset();
+    thorough_ = setup_;
     setup_.detail = core::Detail::verdict;
     thorough_.detail = core::Detail::every_pair;
 }
@@ -206,27 +214,24 @@ core::BlockResult LiveCheck::run(const core::Setup& setup, std::vector<core::Eve
 std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
                                               const core::SimulatorState& state) const {
     std::vector<core::Event> events;
-    const std::optional<core::ToolNumber> tool =
-        motion.tool == 0 && !setup_.tools.contains(core::ToolNumber{0})
-            ? std::nullopt
-            : std::optional(core::ToolNumber{motion.tool});
+    const std::optional<core::ToolNumber> tool = tool_of(motion, setup_);
     if (!state.tool_known || state.tool != tool) events.emplace_back(core::ToolChange{tool});
     const core::SpindleChange spindle = spindle_of(motion);
     if (spindle.direction != state.spindle.direction || spindle.speed != state.spindle.speed)
         events.emplace_back(spindle);
-    events.emplace_back(path_mode_of(motion, most_override_));
+    events.emplace_back(path_mode_of(motion));
 
     core::Motion there = line_of(motion, setup_.machine);
     if (motion.shape == FEELER_ARC) {
         const int normal = *main_axis(vector_of(motion.normal));
-        const core::ArcPath arc = arc_of(motion, normal, values_of(motion.to));
+        const core::ArcPath arc = arc_of(motion, normal, axis_values(motion.to));
         there.kind = core::MotionKind::arc;
         there.feed = 60.0 * motion.feed;
         there.arc = arc;
         // A spiral deviates from the arc about its centre by the difference of its radii.
         there.path_error =
-            std::abs(distance_from_axis(point_of(values_of(motion.from)), arc.centre, normal)
-                     - distance_from_axis(point_of(values_of(motion.to)), arc.centre, normal));
+            std::abs(distance_from_axis(point_of(axis_values(motion.from)), arc.centre, normal)
+                     - distance_from_axis(point_of(axis_values(motion.to)), arc.centre, normal));
     }
     events.emplace_back(there);
     if (motion.shape == FEELER_TAP) {
@@ -245,7 +250,8 @@ void LiveCheck::make(const feeler_segment& motion) {
 void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& stopped_at) {
     feeler_segment part = motion;
     std::copy(stopped_at.begin(), stopped_at.end(), std::begin(part.to));
-    const core::Vec3 from = point_of(values_of(motion.from)), to = point_of(values_of(motion.to));
+    const core::Vec3 from = point_of(axis_values(motion.from)),
+                     to = point_of(axis_values(motion.to));
     const core::Vec3 there = point_of(stopped_at);
     std::vector<core::Event> events = events_of(part, *made_);
     auto& path =
@@ -254,7 +260,7 @@ void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& 
     // The planner may have left the path where it blends into the next motion.
     if (motion.shape == FEELER_ARC) {
         const int normal = path.arc->normal;
-        const core::ArcPath whole = arc_of(motion, normal, values_of(motion.to));
+        const core::ArcPath whole = arc_of(motion, normal, axis_values(motion.to));
         const double turn = 2.0 * std::numbers::pi;
         double angle = turn_about(from, there, whole.centre, normal);
         if (whole.angle < 0.0) angle -= turn;
@@ -276,10 +282,7 @@ void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& 
 
 /// Notes where a motion was stopped, and takes nothing for cut.
 void LiveCheck::leave(const feeler_segment& part) {
-    made_->position = position_of(values_of(part.to), setup_.machine);
-    made_->spread = {};
-    made_->corners.last = {};
-    made_->memory.bounds.clear();
+    put_at(*made_, position_of(axis_values(part.to), setup_.machine));
     if (after_motion) after_motion(part);
 }
 
@@ -293,11 +296,14 @@ bool LiveCheck::catch_up(uint64_t begun, size_t most) {
 
 /// Brings the state to the place where the motion begins.
 core::Result<void> LiveCheck::place(const feeler_segment& motion) {
-    const core::AxisValues from = values_of(motion.from);
+    const core::AxisValues from = axis_values(motion.from);
     const core::AxisPosition position = position_of(from, setup_.machine);
     if (!ahead_) {
         FEELER_TRY(core::SimulatorState state, core::start_of_run(setup_, position));
         state.is_assumed = {};
+        // The machine comes to the guard with its tool: that is no tool change.
+        state.tool = tool_of(motion, setup_);
+        state.tool_known = true;
         made_ = state;
         ahead_ = std::move(state);
         is_refused_ = false;
@@ -305,7 +311,7 @@ core::Result<void> LiveCheck::place(const feeler_segment& motion) {
     }
     if (is_after_drop(motion)) {
         catch_up(motion.follows + (motion.follows_part != 0 ? 0 : 1), waiting_.size());
-        const core::AxisValues stopped_at = values_of(motion.stopped_at);
+        const core::AxisValues stopped_at = axis_values(motion.stopped_at);
         if (motion.follows_part != 0 && !waiting_.empty()
             && waiting_.front().number == motion.follows)
             make_part(waiting_.front(), stopped_at);
@@ -313,32 +319,41 @@ core::Result<void> LiveCheck::place(const feeler_segment& motion) {
         ahead_ = *made_;
         is_refused_ = false;
     }
-    if (is_near(values_of(ahead_->position), values_of(position)) && ahead_->spread.none())
+    if (is_after_drop(motion) || motion.from_rest != 0) ahead_->corners.last = {};
+    if (is_near(known_values(ahead_->position), known_values(position)) && ahead_->spread.none())
         return {};
     // The machine was at rest and was then moved in another way, such as by hand.
     catch_up(motion.number, waiting_.size());
-    for (core::SimulatorState* state : {&*ahead_, &*made_}) {
-        state->position = position;
-        state->spread = {};
-        state->corners.last = {};
-        state->memory.bounds.clear();
-    }
+    put_at(*ahead_, position);
+    put_at(*made_, position);
     return {};
 }
 
 /// Why a motion cannot be checked; or empty.
 std::string LiveCheck::objection(const feeler_segment& motion) const {
     const auto is_finite = [](double value) { return std::isfinite(value); };
-    if (!std::all_of(std::begin(motion.from), std::end(motion.from), is_finite)
-        || !std::all_of(std::begin(motion.to), std::end(motion.to), is_finite))
-        return "Its position is not a number.";
+    const auto are_finite = [&](const auto& values) {
+        return std::all_of(std::begin(values), std::end(values), is_finite);
+    };
+    if (!are_finite(motion.from) || !are_finite(motion.to) || !are_finite(motion.centre)
+        || !are_finite(motion.normal) || !is_finite(motion.feed) || !is_finite(motion.speed)
+        || !is_finite(motion.tolerance))
+        return "One of its values is not a number.";
+    if (motion.shape < FEELER_LINE || motion.shape > FEELER_TAP || motion.purpose < FEELER_RAPID
+        || motion.purpose > FEELER_INDEXER || motion.blending > FEELER_BLENDED)
+        return "It is of a kind that is not known.";
+    if (motion.blending == FEELER_BLENDED && motion.purpose != FEELER_RAPID
+        && !(motion.tolerance > 0.0))
+        return "How far its corners may be rounded is not known.";
     if (motion.tool < 0)
         return "The tool in the spindle is not known: feeler-tp.tool-number is not connected.";
     if (motion.tool > 0 && !setup_.tools.contains(core::ToolNumber{motion.tool}))
-        return fmt::format("The set-up does not describe {}.", tool_text(motion.tool));
+        return fmt::format("The set-up does not describe tool {}.", motion.tool);
+    if (!tool_of(motion, setup_) && motion.purpose != FEELER_RAPID
+        && motion.purpose != FEELER_TOOL_CHANGE)
+        return "The control says that there is no tool in the spindle (M61 Q tells it which).";
     for (size_t i = 0; i < core::axis_count; ++i)
-        if (!setup_.machine.axes[i].present
-            && (std::abs(motion.to[i]) > same_place || std::abs(motion.from[i]) > same_place))
+        if (!setup_.machine.axes[i].present && std::abs(motion.to[i]) > same_place)
             return fmt::format("Axis {} is not at 0, and the set-up has no such axis.",
                                core::axis_letters[i]);
     if (motion.shape == FEELER_ARC && !main_axis(vector_of(motion.normal)))
@@ -351,6 +366,17 @@ LiveAnswer LiveCheck::refused(std::string reason, std::string cure) {
     return {.reason = std::move(reason), .cure = std::move(cure)};
 }
 
+LiveAnswer LiveCheck::refused(const core::BlockResult& result) {
+    const core::Finding* const finding = worst_finding(result);
+    if (!finding) return refused("Its clearance cannot be proven.");
+    return refused(finding->message, finding->cure);
+}
+
+LiveAnswer LiveCheck::permitted(const feeler_segment& motion) {
+    waiting_.push_back(motion);
+    return {.may_move = true};
+}
+
 /// Why a motion may not be judged at all, after the state is where it begins; or empty.
 std::string LiveCheck::begin(const feeler_segment& motion) {
     // It would begin where the motion that was refused ends.
@@ -359,54 +385,84 @@ std::string LiveCheck::begin(const feeler_segment& motion) {
     return objection(motion);
 }
 
-/// Forgets a motion that was tried in `ahead_`.
-void LiveCheck::go_back() {
-    ahead_ = *made_;
-    for (const feeler_segment& earlier : waiting_)
-        run(setup_, events_of(earlier, *ahead_), *ahead_, false);
+/// What is wrong with a rapid if the spindle that the control takes for empty holds one of the
+/// tools after all: it does not know them when it starts.
+std::optional<core::BlockResult> LiveCheck::problem_with_a_tool(const feeler_segment& motion) {
+    for (const auto& [number, assembly] : setup_.tools) {
+        core::SimulatorState state = *ahead_;
+        state.tool = number;
+        feeler_segment with_tool = motion;
+        with_tool.tool = core::value_of(number);
+        core::BlockResult result = run(setup_, events_of(with_tool, state), state, true);
+        if (!is_clear(result)) return result;
+    }
+    return {};
+}
+
+/// What is wrong with a probing motion if the work is not where it should be: all but the flutes
+/// must be clear on the whole way, and the flutes of all but the stock.
+std::string LiveCheck::problem_beyond_contact(const feeler_segment& motion) {
+    core::SimulatorState state = *ahead_;
+    feeler_segment whole = motion;
+    whole.purpose = FEELER_FEED;
+    const core::BlockResult result = run(thorough_, events_of(whole, state), state, true);
+    for (const core::PairClearance& pair : result.pairs) {
+        const bool may_touch = pair.pair.part == core::PartKind::flutes && !pair.pair.fixture;
+        if (!may_touch && pair.verdict != core::Verdict::clear)
+            return fmt::format("If the probe does not touch the work, it brings {} and {} too near "
+                               "to each other.",
+                               core::part_name(setup_, pair.pair),
+                               core::body_name(setup_, pair.pair));
+    }
+    return result.checked ? "" : "Its clearance cannot be proven.";
 }
 
 LiveAnswer LiveCheck::judge(const feeler_segment& motion) {
     if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
+    if (!tool_of(motion, setup_))
+        if (const auto problem = problem_with_a_tool(motion)) return refused(*problem);
+    if (motion.purpose == FEELER_PROBE)
+        if (std::string why = problem_beyond_contact(motion); !why.empty())
+            return refused(std::move(why));
     const core::BlockResult result = run(setup_, events_of(motion, *ahead_), *ahead_, true);
-    if (is_clear(result)) {
-        waiting_.push_back(motion);
-        return {.may_move = true};
-    }
-    go_back();
-    const core::Finding* const finding = worst_finding(result);
-    if (!finding) return refused("Its clearance cannot be proven.");
-    return refused(finding->message, finding->cure);
+    return is_clear(result) ? permitted(motion) : refused(result);
 }
 
 LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
     if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
-    feeler_segment rest = motion;
+    feeler_segment rest = motion, still = motion;
     rest.shape = FEELER_LINE;
     rest.purpose = FEELER_RAPID;
     std::copy(std::begin(rest.from), std::end(rest.from), std::begin(rest.to));
+    still.turns_on = rest.turns_on = 0; // a retreat cuts nothing
     core::SimulatorState now = *ahead_;
     const core::BlockResult before = run(thorough_, events_of(rest, now), now, true);
-    const core::BlockResult result = run(thorough_, events_of(motion, *ahead_), *ahead_, true);
+    const core::BlockResult result = run(thorough_, events_of(still, *ahead_), *ahead_, true);
+    // Out of what it has cut, or of what the set-up still takes for stock.
+    const bool goes_up = is_straight_up(motion);
     // Bounds of a motion include what the control may round off; those at rest do not.
     const double slack =
         retreat_tolerance + (motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0);
     const auto comes_nearer = [&](const core::PairClearance& pair) {
-        const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
         const auto known = std::find_if(before.pairs.begin(), before.pairs.end(),
                                         [&](const auto& one) { return one.pair == pair.pair; });
-        const double at_rest = known == before.pairs.end() ? core::infinity : known->lower;
+        const bool is_known = known != before.pairs.end();
+        const bool is_within = is_known && known->verdict == core::Verdict::collision;
+        if (goes_up && is_within && !pair.pair.fixture) return false;
+        if (pair.verdict == core::Verdict::collision) return true;
+        const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
+        const double at_rest = is_known ? known->lower : core::infinity;
         return pair.lower < limit && pair.lower < at_rest - slack;
     };
     const auto nearer = std::find_if(result.pairs.begin(), result.pairs.end(), comes_nearer);
-    if (result.checked && result.verdict != core::Verdict::collision
-        && nearer == result.pairs.end()) {
-        waiting_.push_back(motion);
-        return {.may_move = true};
-    }
-    go_back();
+    const auto is_other_error = [](const core::Finding& finding) {
+        return finding.severity == core::Severity::error && finding.pair[0].empty();
+    };
+    const auto other = std::find_if(result.findings.begin(), result.findings.end(), is_other_error);
+    if (other != result.findings.end()) return refused(other->message, other->cure);
+    if (result.checked && nearer == result.pairs.end()) return permitted(motion);
     const std::string why = nearer == result.pairs.end()
-                                ? std::string("It is not proven to be free of a collision.")
+                                ? std::string("Its clearance cannot be proven.")
                                 : fmt::format("It brings {} and {} nearer to each other.",
                                               core::part_name(setup_, nearer->pair),
                                               core::body_name(setup_, nearer->pair));

@@ -35,21 +35,23 @@ struct LiveAnswer {
 /// Motions are those of the ring (feeler_ring.h), in mm and degrees, in their order.
 class LiveCheck {
 public:
-    /// `most_override`: the largest feed override, 1 for 100 %.
-    explicit LiveCheck(const core::Setup& setup, double most_override = 1.0);
+    explicit LiveCheck(const core::Setup& setup);
 
     /// Checks the next motion. It may move only if it is proven clear and breaks no rule. After one
     /// that may not, none may until the control has dropped it: what follows would start elsewhere.
     LiveAnswer judge(const feeler_segment& motion);
 
     /// As judge(), after a violation that the operator has not cleared: the motion may move if it
-    /// loses no clearance. All along it, no pair of bodies is nearer to each other than at its
-    /// start by more than 0.01 mm, unless it stays 10 mm apart and twice its allowance. It may move
-    /// so even if it is not clear, but not in a collision.
+    /// loses no clearance, without cutting. All along it, no pair of bodies is nearer to each other
+    /// than at its start by more than 0.01 mm, unless it stays 10 mm apart and twice its allowance.
+    /// Straight up it may leave the stock in any case: a guard that was started anew does not know
+    /// what was cut.
     LiveAnswer judge_retreat(const feeler_segment& motion);
 
     /// Whether the motions that the control has queued cannot move any more, after a refusal.
     bool is_refused() const { return is_refused_; }
+    /// Judges nothing until the control has dropped its motions: one of them was refused before.
+    void refuse_until_drop() { is_refused_ = true; }
 
     /// Called with each motion that was made, once it is known that it was. One that was stopped on
     /// its way ends where it was stopped.
@@ -61,7 +63,6 @@ public:
 
 private:
     std::string begin(const feeler_segment& motion);
-    void go_back();
     core::Result<void> place(const feeler_segment& motion);
     void make(const feeler_segment& motion);
     void leave(const feeler_segment& part);
@@ -71,11 +72,14 @@ private:
                                        const core::SimulatorState& state) const;
     core::BlockResult run(const core::Setup& setup, std::vector<core::Event> events,
                           core::SimulatorState& state, bool measures);
+    std::optional<core::BlockResult> problem_with_a_tool(const feeler_segment& motion);
+    std::string problem_beyond_contact(const feeler_segment& motion);
+    LiveAnswer permitted(const feeler_segment& motion);
     LiveAnswer refused(std::string reason, std::string cure = {});
+    LiveAnswer refused(const core::BlockResult& result);
 
-    core::Setup setup_;    // measures only what a verdict needs
-    core::Setup thorough_; // measures every pair
-    double most_override_ = 1.0;
+    core::Setup setup_;                         // measures only what a verdict needs
+    core::Setup thorough_;                      // measures every pair
     std::optional<core::SimulatorState> ahead_; // after all motions that may move
     std::optional<core::SimulatorState> made_;  // after those that have been made
     std::deque<feeler_segment> waiting_;        // what is in `ahead_` and not in `made_`

@@ -21,9 +21,15 @@ def stored_offset(stat):
     ini = linuxcnc.ini(stat.ini_filename)
     name = ini.find("RS274NGC", "PARAMETER_FILE") or "rs274ngc.var"
     path = os.path.join(os.path.dirname(stat.ini_filename), os.path.expanduser(name))
-    with open(path, encoding="utf-8") as file:
-        words = [line.split() for line in file]
-    values = {int(pair[0]): float(pair[1]) for pair in words if len(pair) == 2}
+    values = {}
+    try:
+        with open(path, encoding="utf-8", errors="replace") as file:
+            for line in file:
+                words = line.split()
+                if len(words) == 2 and words[0].isdigit():
+                    values[int(words[0])] = float(words[1])
+    except (OSError, ValueError):
+        return 0, [0.0] * 9, 0.0
     index = int(values.get(5220, 1))
     first = 5221 + 20 * (index - 1)
     origin = [values.get(first + axis, 0.0) for axis in range(9)]

@@ -106,7 +106,6 @@ public:
         next.speed = 1000.0;
         next.blending = FEELER_EXACT_STOP;
         next.feed = 10.0;
-        next.most_feed = next.acceleration = 1000.0;
     }
 
     /// Queues a line to X, Y and Z of the tip of tool 1 in G54.
@@ -201,7 +200,7 @@ protected:
 
     app::SetupFile setup_ = setup_of(setup_text);
     Machine machine_;
-    app::Guard guard_{setup_.setup, *machine_.ring, 1.0, 1.0};
+    app::Guard guard_{setup_.setup, *machine_.ring, 1.0, 0.1};
     std::vector<std::string> told_;
     std::vector<feeler_segment> made_;
 };
@@ -336,11 +335,23 @@ TEST_F(GuardedMachine, RefusesWhatItCannotCheck) {
         const uint64_t before = machine_.permitted();
         EXPECT_EQ(permitted(), before);
         machine_.abort_at_rest();
+        ++machine_.ring->cleared;
+        guard_.step();
+        told_.erase(std::remove(told_.begin(), told_.end(), "Feeler: the violation is cleared."),
+                    told_.end());
         return told_.empty() ? std::string() : told_.back();
     };
     EXPECT_THAT(refusal_of([](auto& motion) { motion.tool = -1; }), HasSubstr("tool-number"));
     EXPECT_THAT(refusal_of([](auto& motion) { motion.tool = 7; }), HasSubstr("tool 7"));
     EXPECT_THAT(refusal_of([](auto& motion) { motion.to[3] = 1.0; }), HasSubstr("Axis A"));
+    for (const auto& change : std::vector<std::function<void(feeler_segment&)>>{
+             [](auto& motion) { motion.centre[0] = std::numeric_limits<double>::quiet_NaN(); },
+             [](auto& motion) { motion.normal[2] = std::numeric_limits<double>::infinity(); },
+             [](auto& motion) { motion.feed = std::numeric_limits<double>::infinity(); },
+             [](auto& motion) { motion.tolerance = std::numeric_limits<double>::quiet_NaN(); }})
+        EXPECT_THAT(refusal_of(change), HasSubstr("not a number"));
+    EXPECT_THAT(refusal_of([](auto& motion) { motion.shape = 0; }), HasSubstr("kind"));
+    EXPECT_THAT(refusal_of([](auto& motion) { motion.purpose = 7; }), HasSubstr("kind"));
     EXPECT_THAT(
         refusal_of([](auto& motion) { motion.to[1] = std::numeric_limits<double>::quiet_NaN(); }),
         HasSubstr("not a number"));
@@ -375,16 +386,154 @@ TEST_F(GuardedMachine, CountsRoundedCorners) {
     const uint64_t last = machine_.line(52.5, 0, 20);
     EXPECT_EQ(permitted(), last);
     machine_.move();
-    // Without a tolerance: as far as feed and acceleration demand, here 30 * 30 / 1000 mm.
+    EXPECT_EQ(machine_.ring->feed_tolerance, 0.1); // for what states none
     machine_.next.tolerance = 0.0;
-    machine_.next.feed = 30.0;
     machine_.line(52.5, 5, 20);
     EXPECT_EQ(permitted(), last);
+    EXPECT_THAT(told_.back(), HasSubstr("rounded"));
+}
+
+/// A corner between rapids is not rounded if the machine rests there.
+TEST_F(GuardedMachine, KnowsWhereTheMachineRests) {
+    machine_.next.blending = FEELER_BLENDED;
+    machine_.rapid(0, 50, 20);
+    machine_.rapid(90, 50, 20);
+    EXPECT_EQ(permitted(), 2U);
+    machine_.next.from_rest = 1;
+    const uint64_t last = machine_.rapid(90, 45, 20); // straight towards the clamp
+    EXPECT_EQ(permitted(), last);
+    machine_.rapid(70, 80, 20);
+    machine_.next.from_rest = 0;
+    machine_.rapid(100, 0, 20); // the corner is rounded towards the clamp
+    EXPECT_EQ(permitted(), last + 1);
+}
+
+/// The control does not know what is in the spindle when it starts.
+TEST_F(GuardedMachine, TrustsNoEmptySpindle) {
+    machine_.next.tool = 0;
+    machine_.next.turns_on = 0;
+    machine_.rapid(0, 0, 30);
+    const uint64_t clear = machine_.rapid(50, 0, 20);
+    machine_.rapid(54, 0, 20); // too near to the clamp, if it is tool 1
+    EXPECT_EQ(permitted(), clear);
+    EXPECT_THAT(told_.back(), HasSubstr("clamp"));
+    machine_.abort_at_rest();
+    machine_.ring->cleared = 1;
+    machine_.line(0, 0, 20);
+    EXPECT_EQ(permitted(), clear);
+    EXPECT_THAT(told_.back(), HasSubstr("M61"));
+}
+
+TEST_F(GuardedMachine, ChangesTools) {
+    machine_.rapid(-60, 0, 50);
+    machine_.next.tool = 2; // 40 mm shorter, so its tip is 40 mm higher
+    machine_.rapid(-60, 0, -35);
+    const uint64_t cut = machine_.line(40, 0, -42);
+    EXPECT_EQ(permitted(), cut);
+    machine_.move();
+    machine_.next.tool = 1; // where tool 2 is
+    machine_.rapid(40, 0, -40);
+    EXPECT_EQ(permitted(), cut);
+}
+
+TEST_F(GuardedMachine, RefusesAFeedWithTheSpindleReversed) {
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -2);
+    machine_.next.turns_on = 2;
+    machine_.line(0, 0, -2);
+    EXPECT_EQ(permitted(), 2U);
+}
+
+TEST_F(GuardedMachine, ChecksTapsAsAWhole) {
+    machine_.rapid(53, 0, 50);
+    const auto tap = [&](double x, double z) {
+        feeler_segment motion = machine_.next;
+        motion.shape = FEELER_TAP;
+        motion.purpose = FEELER_FEED;
+        motion.to[0] = x, motion.to[2] = z + tip;
+        return machine_.queue(motion);
+    };
+    const uint64_t clear = tap(53, 35);
+    EXPECT_EQ(permitted(), clear);
+    machine_.move();
+    EXPECT_EQ(machine_.goal[2], 50 + tip); // it ends where it began
+    const uint64_t over = machine_.rapid(70, 0, 50);
+    tap(70, 31);
+    EXPECT_EQ(permitted(), over);
+}
+
+/// A probe looks for the stock, which may not be there. Everything else must be clear all along.
+TEST_F(GuardedMachine, ChecksAProbeBeyondItsContact) {
+    machine_.next.turns_on = 0;
+    machine_.rapid(-80, 0, 40);
+    machine_.rapid(-80, 0, -5);
+    const uint64_t probe = machine_.line(40, 0, -5, FEELER_PROBE);
+    EXPECT_EQ(permitted(), probe);
+    machine_.abort(probe, -55, 0, -5); // it has touched
+    const uint64_t back = machine_.rapid(-80, 0, -5);
+    EXPECT_EQ(permitted(), back);
+    machine_.move();
+    machine_.line(120, 0, -5, FEELER_PROBE); // behind the stock is the clamp
+    EXPECT_EQ(permitted(), back);
+    EXPECT_THAT(told_.back(), HasSubstr("clamp"));
+}
+
+/// What was refused is not permitted by a guard that is started after that.
+TEST_F(GuardedMachine, StaysRefusedWhenTheGuardIsStartedAnew) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(54, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.move();
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
+    listen(other);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), 1U);
+    machine_.abort_at_rest();
+    const uint64_t up = machine_.rapid(0, 0, 40);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), up);
+}
+
+/// A guard that is started anew takes what was cut for stock. The tool may leave it.
+TEST_F(GuardedMachine, LetsTheToolOutOfACutThatItDoesNotKnow) {
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -5);
+    const uint64_t cut = machine_.line(0, 0, -5);
+    EXPECT_EQ(permitted(), cut);
+    machine_.move();
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
+    listen(other);
+    machine_.rapid(20, 0, -5);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), cut);
+    machine_.abort_at_rest();
+    machine_.rapid(20, 0, -5);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), cut);
+    machine_.abort_at_rest();
+    const uint64_t up = machine_.rapid(0, 0, 30);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), up);
+}
+
+TEST_F(GuardedMachine, DoesNotCutOnRetreat) {
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -5);
+    const uint64_t cut = machine_.line(0, 0, -5);
+    machine_.rapid(20, 0, -5); // into the stock
+    EXPECT_EQ(permitted(), cut);
+    machine_.move();
+    machine_.abort_at_rest();
+    machine_.line(40, 0, -5);
+    EXPECT_EQ(permitted(), cut);
+    machine_.abort_at_rest();
+    const uint64_t back = machine_.line(-60, 0, -5);
+    EXPECT_EQ(permitted(), back);
 }
 
 TEST_F(GuardedMachine, WaitsWhileThereIsAnObjection) {
     std::string why = "G54 X differs.";
-    guard_.objection = [&] { return why; };
+    guard_.objection = [&](const feeler_segment&) { return why; };
     machine_.rapid(0, 0, 30);
     EXPECT_FALSE(guard_.step());
     EXPECT_EQ(machine_.permitted(), 0U);
@@ -400,7 +549,7 @@ TEST_F(GuardedMachine, TakesOverFromAGuardThatWasKilled) {
     machine_.move();
     machine_.rapid(-60, 0, -5);
     machine_.ring->read = 2;
-    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
     listen(other);
     check_all(other);
     EXPECT_EQ(machine_.permitted(), 2U);
@@ -411,7 +560,7 @@ TEST_F(GuardedMachine, BeginsWhenTheMotionsOfAnEarlierGuardAreComplete) {
     machine_.rapid(-60, 0, 30);
     EXPECT_EQ(permitted(), 1U);
     machine_.rapid(-60, 0, -5);
-    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
     EXPECT_FALSE(other.step());
     machine_.move();
     machine_.ring->busy = 1;
@@ -426,7 +575,7 @@ TEST_F(GuardedMachine, EndsWhenAnotherGuardPermits) {
     EXPECT_EQ(permitted(), 1U);
     machine_.move();
     machine_.rapid(-60, 0, 20);
-    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
     EXPECT_TRUE(other.step());
     machine_.move();
     machine_.rapid(-60, 0, 10);
@@ -446,7 +595,7 @@ TEST_F(GuardedMachine, IsTheOnlyOne) {
 
 TEST_F(GuardedMachine, IgnoresPermitsOfAnotherSession) {
     machine_.ring->permitted = feeler_permit(0x4321, 7);
-    app::Guard other(setup_.setup, *machine_.ring, 1.0, 1.0);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
     EXPECT_EQ(machine_.permitted(), 0U);
     machine_.rapid(-60, 0, 30);
     EXPECT_TRUE(other.step());
@@ -493,7 +642,7 @@ TEST_F(GuardedMachine, SkipsMotionsThatWereDropped) {
 
 TEST_F(GuardedMachine, CountsInTheUnitOfTheMachine) {
     Machine inch;
-    app::Guard guard(setup_.setup, *inch.ring, 25.4, 1.0);
+    app::Guard guard(setup_.setup, *inch.ring, 25.4, 0.1);
     feeler_segment motion = inch.next;
     motion.shape = FEELER_LINE;
     motion.purpose = FEELER_RAPID;
@@ -668,7 +817,7 @@ TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
             if (block.result.verdict != core::Verdict::clear || has_error) break;
             ++clear;
         }
-        app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 1.0);
+        app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 0.1);
         while (guard.has_motion() && guard.step()) {
         }
         EXPECT_EQ(motions.machine.permitted(), clear) << "seed " << seed << "\n" << motions.program;

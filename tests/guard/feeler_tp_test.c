@@ -327,7 +327,6 @@ static void ends_synchronization_with_an_abort(void) {
     tpAbort(&tp);
     cycle(10);
     add_line(10, 0, 0);
-    EXPECT(last_segment()->per_turn == 0.0);
     permit(ring->written);
     cycle(3000);
     EXPECT(x_of() == 10.0);
@@ -410,6 +409,59 @@ static void begins_the_motion_after_a_tap_where_that_began(void) {
     EXPECT(last_segment()->from[2] == 0.0);
 }
 
+/* A program without a tolerance gets that of the guard between feeds. */
+static void limits_the_rounding_of_feeds(void) {
+    ring->feed_tolerance = 0.125;
+    add_line(10, 0, 0);
+    EXPECT(last_segment()->tolerance == 0.125);
+    tpSetId(&tp, ++line_number);
+    tpAddLine(&tp, at(20, 0, 0), 1, 50.0, 100.0, 1000.0, 0xff, 0, -1, tag);
+    EXPECT(last_segment()->tolerance == 0.0);
+    permit(1);
+    cycle(1);
+    EXPECT(tp.tolerance == 0.125);
+    permit(2);
+    cycle(1);
+    EXPECT(tp.tolerance == 0.0);
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.5);
+    add_line(30, 0, 0);
+    EXPECT(last_segment()->tolerance == 0.5);
+    tpSetTermCond(&tp, TC_TERM_COND_STOP, 0.0);
+    add_line(40, 0, 0);
+    permit(4);
+    cycle(1);
+    EXPECT(tp.termCond == TC_TERM_COND_STOP);
+}
+
+static void tells_what_begins_at_rest(void) {
+    add_line(10, 0, 0);
+    EXPECT(last_segment()->from_rest);
+    add_line(20, 0, 0);
+    EXPECT(!last_segment()->from_rest);
+    permit(2);
+    while (x_of() < 15.0) cycle(1);
+    add_line(30, 0, 0);
+    EXPECT(!last_segment()->from_rest);
+    permit(3);
+    cycle(5000);
+    add_line(40, 0, 0);
+    EXPECT(last_segment()->from_rest);
+}
+
+static void tells_how_the_spindle_turns(void) {
+    motion.spindle_status[0].direction = -1;
+    motion.spindle_status[0].speed = -500.0;
+    add_line(10, 0, 0);
+    EXPECT(last_segment()->turns_on == 2 && last_segment()->speed == 500.0);
+    motion.spindle_status[0].direction = 0;
+    add_line(20, 0, 0);
+    EXPECT(last_segment()->turns_on == 0);
+    motion.spindle_status[0].direction = 1; /* by hand, without a speed */
+    motion.spindle_status[0].speed = 0.0;
+    add_line(30, 0, 0);
+    EXPECT(last_segment()->turns_on == 1);
+}
+
 static void runs_only_forwards(void) {
     EXPECT(tpSetRunDir(&tp, TC_DIR_REVERSE) != TP_ERR_OK);
     EXPECT(tpSetRunDir(&tp, TC_DIR_FORWARD) == TP_ERR_OK);
@@ -454,6 +506,9 @@ int main(int count, char **words) {
         CASE(keeps_path_modes_with_their_motions),
         CASE(counts_a_motion_once_the_next_one_is_over),
         CASE(begins_the_motion_after_a_tap_where_that_began),
+        CASE(limits_the_rounding_of_feeds),
+        CASE(tells_what_begins_at_rest),
+        CASE(tells_how_the_spindle_turns),
         CASE(runs_only_forwards),
         CASE(is_full_before_the_ring_is),
     };

@@ -49,25 +49,22 @@ enum feeler_purpose {
 enum feeler_blending { FEELER_EXACT_PATH = 0, FEELER_EXACT_STOP = 1, FEELER_BLENDED = 2 };
 
 struct feeler_segment {
-    uint64_t number;     /* 1, 2, 3 ... */
-    uint64_t follows;        /* the motion that was made before it; after an abort an earlier one */
-    uint32_t follows_part;   /* 1: the abort ended that motion on its way */
-    double stopped_at[9];    /* then: where */
+    uint64_t number;       /* 1, 2, 3 ... */
+    uint64_t follows;      /* the motion that was made before it; after an abort an earlier one */
+    uint32_t follows_part; /* 1: the abort ended that motion on its way */
+    uint32_t from_rest;    /* 1: the axes were at rest, so no corner is rounded at its start */
+    double stopped_at[9];  /* where an abort ended the motion that it follows */
     uint32_t shape, purpose, blending;
-    int32_t line;      /* of the program */
-    int32_t tool;      /* in the spindle; 0: none; -1: feeler-tp.tool-number is not connected */
-    int32_t offset;    /* work offset in use: 540 for G54, 593 for G59.3 */
-    int32_t turns;     /* of an arc: full turns before its end; negative: clockwise */
-    uint32_t turns_on; /* the spindle: 0 does not turn, 1 clockwise, 2 counterclockwise */
-    double speed;      /* of the spindle, as commanded, 1/min; negative: counterclockwise */
-    double feed;       /* as programmed, units per second */
-    double most_feed;  /* of which overrides make no more */
-    double per_turn;   /* units per turn of the spindle that it follows; 0: it follows none */
-    double acceleration; /* units per second squared, at most */
-    double tolerance;  /* of a blend; 0: none is stated */
+    int32_t line;          /* of the program */
+    int32_t tool;          /* in the spindle; 0: none; -1: feeler-tp.tool-number is not connected */
+    int32_t offset;        /* work offset in use: 540 for G54, 593 for G59.3 */
+    int32_t turns;         /* of an arc: full turns before its end; negative: clockwise */
+    uint32_t turns_on;     /* the spindle: 0 does not turn, 1 clockwise, 2 counterclockwise */
+    double speed;          /* of the spindle, as commanded, 1/min */
+    double feed;           /* as programmed, units per second */
+    double tolerance;      /* of a blend; 0: none, as between rapids of a program that states none */
     double from[9], to[9];
     double centre[3], normal[3]; /* of an arc */
-    double tool_offset[9];
 };
 
 struct feeler_ring {
@@ -89,9 +86,12 @@ struct feeler_ring {
     /* written by the guard */
     uint64_t read;      /* number of the last motion that was read */
     uint64_t permitted; /* feeler_permit: the planner may have all motions up to a number */
-    uint64_t alive;     /* counts up at least ten times a second */
+    uint64_t alive;     /* counts up while the guard runs */
     uint64_t latched;   /* 1: a violation was found and has not been cleared */
     uint64_t process;   /* id of the guard's process: one guard at a time */
+    /* The tolerance with which feeds are blended where the program states none: with it, how far
+     * they are rounded is known. */
+    double feed_tolerance;
     uint64_t reserved_too[8];
 
     struct feeler_segment segment[FEELER_RING_SEGMENTS]; /* number n at n % FEELER_RING_SEGMENTS */

@@ -90,8 +90,8 @@ struct call {
     int id;
     EmcPose end;
     PmCartesian centre, normal;
-    int turn, type, index;
-    double vel, max_vel, acc, scale, from, to;
+    int turn, type, index, blends;
+    double vel, max_vel, acc, scale, from, to, tolerance;
     unsigned char enables, start, stop;
     char at_speed;
     struct state_tag_t tag;
@@ -138,9 +138,6 @@ static int was_stopped; /* that ended `last_begun` on its way, and nothing was r
 static EmcPose stopped_at;
 static int is_pausing;     /* by the operator */
 static int was_refused;    /* the planner refused a motion since the last one was accepted */
-static double per_turn;    /* of the spindle sync that is set */
-static double known_speed; /* of the spindle, while no tap reverses it */
-static uint64_t last_tap;
 static uint64_t released_at_stop = UINT64_MAX; /* motions after `last_begun` were not made */
 static int was_clear_pressed;
 static uint64_t last_alive;
@@ -228,20 +225,24 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     s->offset = c->tag.fields[GM_FIELD_ORIGIN];
     s->turns = c->turn;
     /* LinuxCNC starts and stops the spindle only once all motions before that were made. */
-    if (status && last_tap <= ring->made) known_speed = status->spindle_status[0].speed;
-    if (shape == FEELER_TAP) last_tap = c->number;
-    s->speed = known_speed;
-    s->per_turn = per_turn;
-    s->turns_on = s->speed > 0.0 ? 1 : s->speed < 0.0 ? 2 : 0;
+    if (status) {
+        int const direction = status->spindle_status[0].direction;
+        double const speed = status->spindle_status[0].speed;
+        s->turns_on = direction > 0 ? 1 : direction < 0 ? 2 : 0;
+        s->speed = speed < 0.0 ? -speed : speed;
+    }
     s->feed = c->vel;
-    s->most_feed = c->max_vel;
-    s->acceleration = c->acc;
-    s->tolerance = tolerance;
+    /* Rapids and feeds are never blended with each other. */
+    c->blends = s->blending == FEELER_BLENDED;
+    c->tolerance = tolerance;
+    if (s->blending == FEELER_BLENDED && tolerance == 0.0 && s->purpose != FEELER_RAPID)
+        c->tolerance = ring->feed_tolerance;
+    s->tolerance = c->tolerance;
+    s->from_rest = motion_count == 0 && real_tpIsDone(the_tp);
     copy_pose(s->from, &goal);
     copy_pose(s->to, &c->end);
     s->centre[0] = c->centre.x, s->centre[1] = c->centre.y, s->centre[2] = c->centre.z;
     s->normal[0] = c->normal.x, s->normal[1] = c->normal.y, s->normal[2] = c->normal.z;
-    if (status) copy_pose(s->tool_offset, &status->tool_offset);
 
     c->id = next_id;
     c->tag.packed_flags &= 0xffffffffUL;
@@ -299,6 +300,8 @@ int tpAddRigidTap(TP_STRUCT *const tp, EmcPose end, double vel, double max_vel, 
 /* --- passing on --------------------------------------------------------------------------------*/
 
 static int pass_on(TP_STRUCT *tp, struct call *c) {
+    if (is_motion(c) && c->blends)
+        real_tpSetTermCond(tp, TC_TERM_COND_PARABOLIC, c->tolerance);
     switch (c->what) {
     case ADD_LINE:
         return real_tpAddLine(tp, c->end, c->type, c->vel, c->max_vel, c->acc, c->enables,
@@ -329,10 +332,7 @@ static void drop_calls(TP_STRUCT *tp) {
     for (unsigned i = 0; i < call_count; ++i)
         if (call_at(i)->what == SET_TERM_COND || call_at(i)->what == SET_SYNC)
             pass_on(tp, call_at(i));
-    if (motion_count > 0) {
-        real_tpSetSpindleSync(tp, 0, 0.0, 0);
-        per_turn = 0;
-    }
+    if (motion_count > 0) real_tpSetSpindleSync(tp, 0, 0.0, 0);
     call_count = motion_count = 0;
     was_dropped = 1;
     feeler_store(&ring->dropped, ring->written);
@@ -443,7 +443,6 @@ int tpSetTermCond(TP_STRUCT *const tp, int cond, double tol) {
 }
 
 int tpSetSpindleSync(TP_STRUCT *const tp, int spindle, double sync, int wait) {
-    per_turn = sync;
     if (call_count == 0) return real_tpSetSpindleSync(tp, spindle, sync, wait);
     struct call *c = new_call(SET_SYNC);
     if (!c) return TP_ERR_FAIL;
@@ -482,7 +481,7 @@ int tpClear(TP_STRUCT *const tp) {
     int const result = real_tpClear(tp);
     is_aborting = is_pausing = was_refused = 0;
     term_cond = TC_TERM_COND_PARABOLIC;
-    tolerance = per_turn = 0;
+    tolerance = 0;
     note_stop(tp, was_busy, before);
     feeler_store(&ring->busy, 0);
     return result;
