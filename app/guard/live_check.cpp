@@ -377,12 +377,13 @@ LiveAnswer LiveCheck::permitted(const feeler_segment& motion) {
     return {.may_move = true};
 }
 
-/// Why a motion may not be judged at all, after the state is where it begins; or empty.
+/// Brings the state to where a motion begins. Why it may not be judged at all; or empty.
 std::string LiveCheck::begin(const feeler_segment& motion) {
     // It would begin where the motion that was refused ends.
     if (is_refused_ && !is_after_drop(motion)) return "A motion before it was refused.";
+    if (std::string why = objection(motion); !why.empty()) return why;
     if (auto placed = place(motion); !placed) return placed.error().message;
-    return objection(motion);
+    return {};
 }
 
 /// What is wrong with a rapid if the spindle that the control takes for empty holds one of the
@@ -430,6 +431,8 @@ LiveAnswer LiveCheck::judge(const feeler_segment& motion) {
 
 LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
     if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
+    if (!tool_of(motion, setup_))
+        if (const auto problem = problem_with_a_tool(motion)) return refused(*problem);
     feeler_segment rest = motion, still = motion;
     rest.shape = FEELER_LINE;
     rest.purpose = FEELER_RAPID;

@@ -93,7 +93,7 @@ void MotionLog::State::write_motion(const feeler_segment& motion) {
         const char* const planes[] = {"G19", "G18", "G17"};
         const size_t normal = motion.normal[2] != 0.0 ? 2 : motion.normal[1] != 0.0 ? 1 : 0;
         const bool is_clockwise = (motion.turns < 0) != (motion.normal[normal] < 0.0);
-        file << planes[2 - normal] << (is_clockwise ? " G2" : " G3")
+        file << planes[normal] << (is_clockwise ? " G2" : " G3")
              << axis_words(motion.to, motion.from, true);
         for (size_t i = 0; i < 3; ++i)
             if (i != normal)

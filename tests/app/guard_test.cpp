@@ -30,6 +30,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A block of aluminium of 100 x 60 x 20 in the middle of G54, a clamp beside it, an end mill of
 /// 10 mm that is 100 mm long. G54 is 200 below the gauge line at home, so the tip is at machine
@@ -314,6 +315,127 @@ TEST_F(GuardedMachine, AllowsOnlyRetreatsAfterAViolation) {
     EXPECT_EQ(machine_.ring->latched, 0U);
 }
 
+TEST_F(GuardedMachine, MayComeNearerOnRetreatToWhatIsFar) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(54.5, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.abort_at_rest();
+    const uint64_t far = machine_.rapid(44, 0, 20); // 11 mm from the clamp
+    EXPECT_EQ(permitted(), far);
+    machine_.move();
+    machine_.rapid(46, 0, 20); // 9 mm
+    EXPECT_EQ(permitted(), far);
+}
+
+/// Rules that are about no pair of bodies hold on retreat, too.
+TEST(GuardedSetups, KeepAxesWithinTheirLimits) {
+    std::string text = setup_text;
+    text.replace(text.find("direction = [1, 0, 0]"), 21,
+                 "direction = [1, 0, 0]\nmin = -300\nmax = 300");
+    const app::SetupFile setup = setup_of(text);
+    Machine machine;
+    app::Guard guard(setup.setup, *machine.ring, 1.0, 0.1);
+    machine.rapid(0, 0, 70);
+    machine.rapid(400, 0, 70);
+    while (guard.has_motion() && guard.step()) {
+    }
+    EXPECT_EQ(machine.permitted(), 1U);
+    machine.abort_at_rest();
+    machine.rapid(400, 0, 70);
+    while (guard.has_motion() && guard.step()) {
+    }
+    EXPECT_EQ(machine.permitted(), 1U);
+}
+
+/// How LinuxCNC rounds corners is not what the set-up says.
+TEST(GuardedSetups, CannotChangeHowCornersAreRounded) {
+    std::string text = setup_text;
+    text.insert(text.find("[[machine.axis]]"), "[machine]\nrapid_corner_tolerance = 0\n");
+    const app::SetupFile setup = setup_of(text);
+    for (const double tolerance : {0.0, 0.1}) {
+        Machine machine;
+        app::Guard guard(setup.setup, *machine.ring, 1.0, 0.1);
+        machine.next.blending = FEELER_BLENDED;
+        machine.next.tolerance = tolerance;
+        machine.rapid(40, 48, 20);
+        machine.rapid(88, 48, 20);
+        machine.rapid(88, -50, 20); // 8 mm around the clamp, unless the corner is cut
+        while (guard.has_motion() && guard.step()) {
+        }
+        EXPECT_EQ(machine.permitted(), tolerance == 0.0 ? 2U : 3U);
+    }
+}
+
+TEST(GuardedSetups, MayAskForLargeClearances) {
+    const app::SetupFile setup = setup_of("allowance = 60\n" + setup_text);
+    Machine machine;
+    app::Guard guard(setup.setup, *machine.ring, 1.0, 0.1);
+    machine.next.turns_on = 0;
+    machine.rapid(0, 0, 95);
+    machine.rapid(0, 0, 85); // 55 above the clamp, and beside it
+    machine.rapid(70, 0, 85);
+    while (guard.has_motion() && guard.step()) {
+    }
+    EXPECT_EQ(machine.permitted(), 2U);
+}
+
+/// A helix passes the clamp as often as it turns.
+TEST_F(GuardedMachine, CountsTheTurnsOfAHelix) {
+    const auto helix = [&](int turns) {
+        feeler_segment arc = machine_.next;
+        arc.shape = FEELER_ARC;
+        arc.purpose = FEELER_CURVE;
+        arc.normal[2] = 1.0;
+        arc.turns = turns - 1;
+        arc.centre[0] = 44.0;
+        arc.to[0] = 34.0, arc.to[2] = 10 + tip;
+        return machine_.queue(arc);
+    };
+    machine_.rapid(34, 0, 60);
+    const uint64_t one = helix(1); // passes X54 at Z35
+    EXPECT_EQ(permitted(), one);
+    machine_.move();
+    const uint64_t up = machine_.rapid(34, 0, 60);
+    helix(3); // at Z51, Z35 and Z18
+    EXPECT_EQ(permitted(), up);
+}
+
+/// Where an abort ended a motion beside its path, it is not known what was cut.
+TEST_F(GuardedMachine, TakesLessForCutWhereThePathWasLeft) {
+    for (const double beside : {0.0, 1.0}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.rapid(-60, 0, 30);
+        machine.rapid(-60, 0, -5);
+        const uint64_t cut = machine.line(40, 0, -5);
+        check_all(guard);
+        ASSERT_EQ(machine.permitted(), cut);
+        machine.abort(cut, 0, beside, -5);
+        machine.jog(0, 0, -5);
+        const uint64_t back = machine.rapid(-60, 0, -5);
+        check_all(guard);
+        EXPECT_EQ(machine.permitted(), beside == 0.0 ? back : cut);
+    }
+}
+
+TEST_F(GuardedMachine, TakesNothingForCutOfTurnsThatAreNotKnown) {
+    machine_.rapid(20, 0, 30);
+    machine_.line(20, 0, -5);
+    feeler_segment arc = machine_.next;
+    arc.shape = FEELER_ARC;
+    arc.purpose = FEELER_CURVE;
+    arc.normal[2] = 1.0;
+    arc.turns = 2;
+    arc.centre[2] = -5 + tip;
+    arc.to[0] = 20.0, arc.to[2] = -8 + tip;
+    const uint64_t helix = machine_.queue(arc);
+    EXPECT_EQ(permitted(), helix);
+    machine_.abort(helix, 0, 20, -6);
+    machine_.jog(0, 20, 5);
+    machine_.rapid(0, 20, -4.9);
+    EXPECT_EQ(permitted(), helix);
+}
+
 TEST_F(GuardedMachine, NeverRetreatsIntoACollision) {
     machine_.rapid(0, 0, 30);
     machine_.rapid(60, 0, 20);
@@ -321,6 +443,10 @@ TEST_F(GuardedMachine, NeverRetreatsIntoACollision) {
     machine_.abort_at_rest();
     machine_.jog(58, 0, 20); // the flutes are in the clamp
     machine_.rapid(70, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.abort_at_rest();
+    machine_.jog(58, 0, 20);
+    machine_.rapid(58, 0, 60);
     EXPECT_EQ(permitted(), 1U);
 }
 
@@ -395,17 +521,17 @@ TEST_F(GuardedMachine, CountsRoundedCorners) {
 
 /// A corner between rapids is not rounded if the machine rests there.
 TEST_F(GuardedMachine, KnowsWhereTheMachineRests) {
-    machine_.next.blending = FEELER_BLENDED;
-    machine_.rapid(0, 50, 20);
-    machine_.rapid(90, 50, 20);
-    EXPECT_EQ(permitted(), 2U);
-    machine_.next.from_rest = 1;
-    const uint64_t last = machine_.rapid(90, 45, 20); // straight towards the clamp
-    EXPECT_EQ(permitted(), last);
-    machine_.rapid(70, 80, 20);
-    machine_.next.from_rest = 0;
-    machine_.rapid(100, 0, 20); // the corner is rounded towards the clamp
-    EXPECT_EQ(permitted(), last + 1);
+    for (const uint32_t from_rest : {0U, 1U}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.next.blending = FEELER_BLENDED;
+        machine.rapid(40, 48, 20);
+        machine.rapid(88, 48, 20);
+        machine.next.from_rest = from_rest;
+        machine.rapid(88, -50, 20); // 8 mm around the clamp, unless the corner is cut
+        check_all(guard);
+        EXPECT_EQ(machine.permitted(), 2U + from_rest);
+    }
 }
 
 /// The control does not know what is in the spindle when it starts.
@@ -506,6 +632,7 @@ TEST_F(GuardedMachine, LetsTheToolOutOfACutThatItDoesNotKnow) {
     machine_.rapid(20, 0, -5);
     check_all(other);
     EXPECT_EQ(machine_.permitted(), cut);
+    EXPECT_THAT(told_.back(), Not(HasSubstr("loaded"))); // no tool was changed
     machine_.abort_at_rest();
     machine_.rapid(20, 0, -5);
     check_all(other);
@@ -655,6 +782,76 @@ TEST_F(GuardedMachine, CountsInTheUnitOfTheMachine) {
     inch.queue(motion);
     check_all(guard);
     EXPECT_EQ(inch.permitted(), 1U);
+    EXPECT_DOUBLE_EQ(inch.ring->feed_tolerance, 0.1 / 25.4);
+}
+
+TEST_F(GuardedMachine, CountsTolerancesAndCentresInTheUnitOfTheMachine) {
+    const auto is_permitted = [&](const std::function<void(feeler_segment&)>& change) {
+        Machine inch;
+        app::Guard guard(setup_.setup, *inch.ring, 25.4, 0.1);
+        inch.goal[0] = 40.0 / 25.4;
+        inch.goal[2] = (20.0 + tip) / 25.4;
+        feeler_segment motion = inch.next;
+        motion.shape = FEELER_LINE;
+        motion.purpose = FEELER_FEED;
+        std::copy(std::begin(inch.goal), std::end(inch.goal), std::begin(motion.to));
+        motion.to[0] = 52.5 / 25.4; // 2.5 mm from the clamp
+        change(motion);
+        inch.queue(motion);
+        check_all(guard);
+        return inch.permitted() == 1;
+    };
+    const auto blend = [](double tolerance) {
+        return [tolerance](feeler_segment& motion) {
+            motion.blending = FEELER_BLENDED;
+            motion.tolerance = tolerance / 25.4;
+        };
+    };
+    EXPECT_TRUE(is_permitted(blend(0.4)));
+    EXPECT_FALSE(is_permitted(blend(0.6)));
+    const auto circle = [](double centre) {
+        return [centre](feeler_segment& motion) {
+            motion.shape = FEELER_ARC;
+            motion.purpose = FEELER_CURVE;
+            motion.normal[2] = 1.0;
+            motion.centre[0] = centre / 25.4;
+            motion.to[0] = motion.from[0] = 40.0 / 25.4;
+        };
+    };
+    EXPECT_TRUE(is_permitted(circle(46.0)));
+    EXPECT_FALSE(is_permitted(circle(47.0)));
+}
+
+TEST_F(GuardedMachine, ShowsThatItLives) {
+    guard_.step();
+    const uint64_t before = machine_.ring->alive;
+    guard_.step();
+    EXPECT_GT(machine_.ring->alive, before);
+}
+
+TEST_F(GuardedMachine, TakesNoPermitOverForMotionsThatAreNotThere) {
+    machine_.ring->permitted = feeler_permit(machine_.ring->session, 9);
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1);
+    EXPECT_EQ(machine_.permitted(), 0U);
+}
+
+TEST_F(GuardedMachine, EndsWhenTheRingDoesNotHoldTheNextMotion) {
+    machine_.rapid(0, 0, 30);
+    machine_.ring->segment[1].number = 2;
+    EXPECT_FALSE(guard_.step());
+    EXPECT_TRUE(guard_.is_disturbed());
+    EXPECT_EQ(machine_.permitted(), 0U);
+}
+
+TEST_F(GuardedMachine, KnowsOneVersionOfTheRing) {
+    EXPECT_EQ(app::why_unknown(*machine_.ring), "");
+    machine_.ring->version = 2;
+    EXPECT_THAT(app::why_unknown(*machine_.ring), HasSubstr("version"));
+    machine_.ring->version = FEELER_RING_VERSION;
+    machine_.ring->bytes = 8;
+    EXPECT_NE(app::why_unknown(*machine_.ring), "");
+    machine_.ring->magic = 0;
+    EXPECT_THAT(app::why_unknown(*machine_.ring), HasSubstr("not loaded"));
 }
 
 TEST(PermitTimes, TellsQuantiles) {
@@ -765,8 +962,10 @@ struct RandomMotions {
         feeler_segment motion = machine.next;
         motion.shape = FEELER_ARC;
         motion.purpose = FEELER_CURVE;
-        motion.turns = is_clockwise ? -turns : turns - 1;
-        motion.normal[normal] = 1.0;
+        // Clockwise about an axis is counterclockwise about its opposite.
+        const bool is_reversed = chance(0.5);
+        motion.turns = is_clockwise != is_reversed ? -turns : turns - 1;
+        motion.normal[normal] = is_reversed ? -1.0 : 1.0;
         for (int i = 0; i < 3; ++i) {
             motion.to[i] = to[i] + (i == 2 ? tip : 0.0);
             motion.centre[i] = centre[i] + (i == 2 ? tip : 0.0);
@@ -824,6 +1023,88 @@ TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
         stopped_late += clear > 3 && clear < motions.machine.ring->written;
     }
     EXPECT_GT(stopped_late, 20U);
+}
+
+/// The log of a run is a program with the same motions.
+TEST(GuardedPrograms, AreRepeatedByTheirLogs) {
+    const test_support::ScopedFolder folder;
+    const std::string path = folder.write("mill.toml", setup_text);
+    const app::SetupFile setup = setup_of(setup_text);
+    const auto check_of = [&](const std::string& program) {
+        app::CheckJob job;
+        job.program = program;
+        job.setup = path;
+        return app::run_check(job);
+    };
+    double in_all = 0.0;
+    for (uint32_t seed = 101; seed <= 120; ++seed) {
+        RandomMotions motions(seed);
+        const std::string log_path = folder / "log.ngc";
+        std::vector<double> ends;
+        {
+            app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 0.1);
+            auto log = app::MotionLog::begin(log_path, setup);
+            ASSERT_TRUE(log.has_value());
+            guard.after_motion = [&](const feeler_segment& motion) {
+                log->add(motion);
+                ends.push_back(motion.to[0]);
+            };
+            while (guard.has_motion() && guard.step()) {
+            }
+            motions.machine.move();
+            for (int i = 0; i < 100; ++i) guard.step();
+        }
+        ASSERT_EQ(ends.size(), motions.machine.permitted());
+        const auto logged = check_of(log_path);
+        const auto original = check_of(folder.write("random.ngc", motions.program));
+        ASSERT_TRUE(logged.has_value() && original.has_value());
+        ASSERT_FALSE(logged->stopped.has_value()) << logged->stopped->message;
+        double removed = 0.0, expected = 0.0;
+        size_t count = 0, moves = 0;
+        for (const app::CheckedBlock& block : logged->blocks) {
+            removed += block.result.removed;
+            if (block.result.motion == core::BlockMotion::none) continue;
+            ++count;
+            EXPECT_EQ(block.result.verdict, core::Verdict::clear) << "seed " << seed;
+        }
+        for (const app::CheckedBlock& block : original->blocks) {
+            if (block.result.motion == core::BlockMotion::none || moves == ends.size()) continue;
+            ++moves;
+            expected += block.result.removed;
+        }
+        EXPECT_GE(count, ends.size());
+        EXPECT_LE(count, ends.size() + 1); // and the way to the first one
+        EXPECT_NEAR(removed, expected, 1e-3 * expected + 0.1) << "seed " << seed;
+        in_all += removed;
+    }
+    EXPECT_GT(in_all, 10000.0);
+}
+
+TEST(MotionLog, WritesARefusalBehindTheMotionsBeforeIt) {
+    const test_support::ScopedFolder folder;
+    const app::SetupFile setup = setup_of(setup_text);
+    Machine machine;
+    machine.rapid(0, 0, 30);
+    machine.line(0, 0, 20);
+    machine.rapid(60, 0, 20);
+    machine.rapid(0, 0, 40);
+    const auto motion = [&](uint64_t number) { return machine.ring->segment[number]; };
+    {
+        auto log = app::MotionLog::begin(folder / "log.ngc", setup);
+        ASSERT_TRUE(log.has_value());
+        log->add(motion(1));
+        log->add_refused(motion(3), "too near (to the clamp)");
+        log->add(motion(2));
+        log->add(motion(4));
+        log->add_refused(motion(3), "again");
+    }
+    const std::string text = core::file_bytes(folder / "log.ngc").value();
+    const auto at = [&](const char* what) { return text.find(what); };
+    EXPECT_LT(at("(line 2)"), at("(refused, not made: too near  to the clamp )"));
+    EXPECT_LT(at("too near"), at("(line 4)"));
+    EXPECT_LT(at("(line 4)"), at("(refused, not made: again)"));
+    EXPECT_NE(at("G0 X60.000000"), std::string::npos); // the last one is a motion
+    EXPECT_FALSE(app::MotionLog::begin("/no/such/folder/log.ngc", setup).has_value());
 }
 
 } // namespace
