@@ -19,7 +19,7 @@ endif()
 install(DIRECTORY assets/holders assets/machines assets/meshes assets/programs assets/setups
   DESTINATION ${data} PATTERN "*.py" EXCLUDE)
 install(FILES assets/README.md DESTINATION ${data})
-install(PROGRAMS assets/linuxcnc/feeler_status.py DESTINATION ${data}/linuxcnc)
+install(FILES assets/linuxcnc/feeler_status.py DESTINATION ${data}/linuxcnc)
 install(DIRECTORY assets/linuxcnc/feeler_tp DESTINATION ${data}/linuxcnc)
 
 cmake_path(ABSOLUTE_PATH texts BASE_DIRECTORY /prefix NORMALIZE OUTPUT_VARIABLE from)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Tells feeler guard what LinuxCNC's status says, and passes on its messages to the operator.
 
 Copyright (C) 2026 the Feeler developers
