@@ -344,7 +344,8 @@ std::string LiveCheck::objection(const feeler_segment& motion) const {
         return "It is of a kind that is not known.";
     if (motion.blending == FEELER_BLENDED && motion.purpose != FEELER_RAPID
         && !(motion.tolerance > 0.0))
-        return "How far its corners may be rounded is not known.";
+        return "How far its corners may be rounded is not known: it was queued before the guard "
+               "ran.";
     if (motion.tool < 0)
         return "The tool in the spindle is not known: feeler-tp.tool-number is not connected.";
     if (motion.tool > 0 && !setup_.tools.contains(core::ToolNumber{motion.tool}))
