@@ -80,7 +80,7 @@ void take_speeds(core::Machine& machine, const IniFile& ini, double unit) {
         const double scale = core::is_rotary(i) ? 1.0 : unit;
         const auto value = [&](const char* name) -> std::optional<double> {
             const auto found = ini.values.find(fmt::format("_ini[axis_{}]{}", letter, name));
-            if (found == ini.values.end()) return {};
+            if (found == ini.values.end() || !(found->second > 0.0)) return {};
             return found->second * scale;
         };
         if (const auto speed = value("max_velocity")) machine.axes[i].rapid = 60.0 * *speed;
@@ -136,7 +136,12 @@ public:
     /// What is known from now on must be newer than now.
     void ask_anew() {
         is_fresh_ = false;
+        asked_ = core::platform::steady_milliseconds();
         companion_.write("?\n");
+    }
+    /// Asks again if there is no answer for a second.
+    void ask_again() {
+        if (!is_fresh_ && core::platform::steady_milliseconds() - asked_ > 1000) ask_anew();
     }
     const std::optional<ControlState>& state() const { return state_; }
     bool is_fresh() const { return is_fresh_; }
@@ -151,6 +156,7 @@ private:
     std::string text_;
     std::optional<ControlState> state_;
     bool is_fresh_ = false;
+    int64_t asked_ = 0; // milliseconds
 };
 
 /// Runs the guard until LinuxCNC ends or the user interrupts.
@@ -233,6 +239,7 @@ std::string GuardRun::objection(const feeler_segment& motion) {
         asked_for_ = motion;
         status_.ask_anew();
     }
+    status_.ask_again();
     if (!status_.is_fresh() || !status_.state()) return awaits_status;
     return difference(setup_, *status_.state(), unit_, options_.tolerance);
 }

@@ -241,9 +241,9 @@ std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
     return events;
 }
 
-void LiveCheck::make(const feeler_segment& motion) {
-    run(setup_, events_of(motion, *made_), *made_, false);
-    if (after_motion) after_motion(motion);
+void LiveCheck::make(const Permitted& motion) {
+    run(setup_, events_of(motion.checked, *made_), *made_, false);
+    if (after_motion) after_motion(motion.queued);
 }
 
 /// Follows the cut of a motion that was stopped on its way.
@@ -264,9 +264,13 @@ void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& 
         const double turn = 2.0 * std::numbers::pi;
         double angle = turn_about(from, there, whole.centre, normal);
         if (whole.angle < 0.0) angle -= turn;
-        // Where it is on its way, or on which of its turns, is not known.
-        const bool is_known =
-            std::abs(angle) <= std::abs(whole.angle) && motion.turns <= 0 && motion.turns >= -1;
+        // Where it is on its way, or on which of its turns, is not known. Near the start of a full
+        // circle it may be near its end.
+        const bool is_doubtful =
+            std::abs(whole.angle) > turn - 0.1
+            && glm::length(there - from) < std::max(1.0, 2.0 * motion.tolerance);
+        const bool is_known = !is_doubtful && std::abs(angle) <= std::abs(whole.angle)
+                              && motion.turns <= 0 && motion.turns >= -1;
         if (!is_known) return leave(part);
         const double height = from[normal] + angle / whole.angle * (to[normal] - from[normal]);
         path.path_error += std::abs(distance_from_axis(there, whole.centre, normal)
@@ -287,11 +291,11 @@ void LiveCheck::leave(const feeler_segment& part) {
 }
 
 bool LiveCheck::catch_up(uint64_t begun, size_t most) {
-    for (; most > 0 && !waiting_.empty() && waiting_.front().number < begun; --most) {
+    for (; most > 0 && !waiting_.empty() && waiting_.front().queued.number < begun; --most) {
         make(waiting_.front());
         waiting_.pop_front();
     }
-    return !waiting_.empty() && waiting_.front().number < begun;
+    return !waiting_.empty() && waiting_.front().queued.number < begun;
 }
 
 /// Brings the state to the place where the motion begins.
@@ -313,8 +317,8 @@ core::Result<void> LiveCheck::place(const feeler_segment& motion) {
         catch_up(motion.follows + (motion.follows_part != 0 ? 0 : 1), waiting_.size());
         const core::AxisValues stopped_at = axis_values(motion.stopped_at);
         if (motion.follows_part != 0 && !waiting_.empty()
-            && waiting_.front().number == motion.follows)
-            make_part(waiting_.front(), stopped_at);
+            && waiting_.front().queued.number == motion.follows)
+            make_part(waiting_.front().queued, stopped_at);
         waiting_.clear();
         ahead_ = *made_;
         is_refused_ = false;
@@ -373,8 +377,8 @@ LiveAnswer LiveCheck::refused(const core::BlockResult& result) {
     return refused(finding->message, finding->cure);
 }
 
-LiveAnswer LiveCheck::permitted(const feeler_segment& motion) {
-    waiting_.push_back(motion);
+LiveAnswer LiveCheck::permitted(const feeler_segment& queued, const feeler_segment& checked) {
+    waiting_.push_back({queued, checked});
     return {.may_move = true};
 }
 
@@ -393,6 +397,7 @@ std::optional<core::BlockResult> LiveCheck::problem_with_a_tool(const feeler_seg
     for (const auto& [number, assembly] : setup_.tools) {
         core::SimulatorState state = *ahead_;
         state.tool = number;
+        state.memory.bounds.clear(); // they are of another tool
         feeler_segment with_tool = motion;
         with_tool.tool = core::value_of(number);
         core::BlockResult result = run(setup_, events_of(with_tool, state), state, true);
@@ -419,15 +424,35 @@ std::string LiveCheck::problem_beyond_contact(const feeler_segment& motion) {
     return result.checked ? "" : "Its clearance cannot be proven.";
 }
 
-LiveAnswer LiveCheck::judge(const feeler_segment& motion) {
-    if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
+/// The motion with how far the corner at its start may be rounded: by the mode of the one before,
+/// if that is wider.
+feeler_segment LiveCheck::with_corner(feeler_segment motion) const {
+    const bool is_rapid = motion.purpose == FEELER_RAPID;
+    if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0) return motion;
+    const feeler_segment& before = waiting_.back().queued;
+    if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID))
+        return motion;
+    // Rapids without a tolerance are rounded as far as speeds demand.
+    const bool is_free =
+        before.tolerance == 0.0 || (motion.blending == FEELER_BLENDED && motion.tolerance == 0.0);
+    motion.tolerance = is_free ? 0.0
+                       : motion.blending == FEELER_BLENDED
+                           ? std::max(motion.tolerance, before.tolerance)
+                           : before.tolerance;
+    motion.blending = FEELER_BLENDED;
+    return motion;
+}
+
+LiveAnswer LiveCheck::judge(const feeler_segment& queued) {
+    if (std::string why = begin(queued); !why.empty()) return refused(std::move(why));
+    const feeler_segment motion = with_corner(queued);
     if (!tool_of(motion, setup_))
         if (const auto problem = problem_with_a_tool(motion)) return refused(*problem);
     if (motion.purpose == FEELER_PROBE)
         if (std::string why = problem_beyond_contact(motion); !why.empty())
             return refused(std::move(why));
     const core::BlockResult result = run(setup_, events_of(motion, *ahead_), *ahead_, true);
-    return is_clear(result) ? permitted(motion) : refused(result);
+    return is_clear(result) ? permitted(queued, motion) : refused(result);
 }
 
 LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
@@ -438,7 +463,8 @@ LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
     rest.shape = FEELER_LINE;
     rest.purpose = FEELER_RAPID;
     std::copy(std::begin(rest.from), std::end(rest.from), std::begin(rest.to));
-    still.turns_on = rest.turns_on = 0; // a retreat cuts nothing
+    still.turns_on = rest.turns_on = 0;                             // a retreat cuts nothing
+    if (still.purpose == FEELER_PROBE) still.purpose = FEELER_FEED; // all of it
     core::SimulatorState now = *ahead_;
     const core::BlockResult before = run(thorough_, events_of(rest, now), now, true);
     const core::BlockResult result = run(thorough_, events_of(still, *ahead_), *ahead_, true);
@@ -464,7 +490,7 @@ LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
     };
     const auto other = std::find_if(result.findings.begin(), result.findings.end(), is_other_error);
     if (other != result.findings.end()) return refused(other->message, other->cure);
-    if (result.checked && nearer == result.pairs.end()) return permitted(motion);
+    if (result.checked && nearer == result.pairs.end()) return permitted(motion, motion);
     const std::string why = nearer == result.pairs.end()
                                 ? std::string("Its clearance cannot be proven.")
                                 : fmt::format("It brings {} and {} nearer to each other.",

@@ -62,9 +62,13 @@ public:
     bool catch_up(uint64_t begun, size_t most);
 
 private:
+    struct Permitted {
+        feeler_segment queued, checked; // as the control has queued it, and with_corner()
+    };
+
     std::string begin(const feeler_segment& motion);
     core::Result<void> place(const feeler_segment& motion);
-    void make(const feeler_segment& motion);
+    void make(const Permitted& motion);
     void leave(const feeler_segment& part);
     void make_part(const feeler_segment& motion, const core::AxisValues& stopped_at);
     std::string objection(const feeler_segment& motion) const;
@@ -74,7 +78,8 @@ private:
                           core::SimulatorState& state, bool measures);
     std::optional<core::BlockResult> problem_with_a_tool(const feeler_segment& motion);
     std::string problem_beyond_contact(const feeler_segment& motion);
-    LiveAnswer permitted(const feeler_segment& motion);
+    feeler_segment with_corner(feeler_segment motion) const;
+    LiveAnswer permitted(const feeler_segment& queued, const feeler_segment& checked);
     LiveAnswer refused(std::string reason, std::string cure = {});
     LiveAnswer refused(const core::BlockResult& result);
 
@@ -82,7 +87,7 @@ private:
     core::Setup thorough_;                      // measures every pair
     std::optional<core::SimulatorState> ahead_; // after all motions that may move
     std::optional<core::SimulatorState> made_;  // after those that have been made
-    std::deque<feeler_segment> waiting_;        // what is in `ahead_` and not in `made_`
+    std::deque<Permitted> waiting_;             // what is in `ahead_` and not in `made_`
     bool is_refused_ = false;                   // until the control drops what it has queued
     uint32_t block_ = 0;
 };

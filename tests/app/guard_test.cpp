@@ -550,6 +550,68 @@ TEST_F(GuardedMachine, TrustsNoEmptySpindle) {
     EXPECT_THAT(told_.back(), HasSubstr("M61"));
 }
 
+/// What is known of the distances of one tool does not hold for another.
+TEST_F(GuardedMachine, TrustsNoEmptySpindleAfterAKnownTool) {
+    machine_.next.tool = 2;
+    machine_.rapid(0, 0, 50);
+    const uint64_t over = machine_.rapid(70, 0, 0); // tip of tool 2: 10 mm above the clamp
+    EXPECT_EQ(permitted(), over);
+    machine_.move();
+    machine_.next.tool = 0;
+    machine_.rapid(70, 0.5, 0); // tool 1 would be in it
+    EXPECT_EQ(permitted(), over);
+}
+
+/// A stop near the start of a full circle may be one near its end.
+TEST_F(GuardedMachine, TakesNoFullCircleForCutThatWasHardlyBegun) {
+    for (const double beside : {0.0, -0.02, 0.02}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.rapid(20, 0, 30);
+        machine.line(20, 0, -5);
+        feeler_segment arc = machine.next;
+        arc.shape = FEELER_ARC;
+        arc.purpose = FEELER_CURVE;
+        arc.normal[2] = 1.0;
+        arc.centre[2] = -5 + tip;
+        arc.to[0] = 20.0, arc.to[2] = -5 + tip;
+        const uint64_t circle = machine.queue(arc);
+        check_all(guard);
+        ASSERT_EQ(machine.permitted(), circle);
+        machine.abort(circle, 20, beside, -5);
+        machine.jog(-20, 0, 30);
+        machine.rapid(-20, 0, -4.5);
+        check_all(guard);
+        EXPECT_EQ(machine.permitted(), circle) << beside;
+    }
+}
+
+/// The corner behind a blended motion is rounded, whatever the mode of the next one is.
+TEST_F(GuardedMachine, RoundsTheCornerByTheModeOfTheMotionBefore) {
+    for (const double tolerance : {0.1, 1.0}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.rapid(0, 50, 20);
+        machine.next.blending = FEELER_BLENDED;
+        machine.next.tolerance = tolerance;
+        const uint64_t before = machine.line(52.5, 50, 20);
+        machine.next.blending = FEELER_EXACT_STOP;
+        machine.next.tolerance = 0.0;
+        machine.line(52.5, 45, 20);
+        machine.line(52.5, -50, 20); // 2.5 mm beside the clamp
+        check_all(guard);
+        // The corner is away from the clamp, and the mode is not passed on.
+        EXPECT_EQ(machine.permitted(), before + 2);
+        machine.next.blending = FEELER_BLENDED;
+        machine.next.tolerance = tolerance;
+        machine.line(52.5, -45, 20);
+        machine.next.blending = FEELER_EXACT_STOP;
+        machine.line(52.5, 45, 20);
+        check_all(guard);
+        EXPECT_EQ(machine.permitted(), tolerance < 0.5 ? before + 4 : before + 3);
+    }
+}
+
 TEST_F(GuardedMachine, ChangesTools) {
     machine_.rapid(-60, 0, 50);
     machine_.next.tool = 2; // 40 mm shorter, so its tip is 40 mm higher

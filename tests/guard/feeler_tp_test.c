@@ -346,6 +346,9 @@ static void stops_at_external_offsets(void) {
     motion.eoffset_pose.tran.z = -5.0;
     cycle(500);
     EXPECT(tpIsDone(&tp) && x_of() < 30.0 && ring->external == 1);
+    EXPECT(add_line(200, 10, 0) == TP_ERR_FAIL); /* so that LinuxCNC ends the program */
+    tpAbort(&tp);
+    cycle(5);
     add_line(0, 0, 0);
     permit(ring->written);
     cycle(500);

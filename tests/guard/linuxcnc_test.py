@@ -240,7 +240,7 @@ class Machine:
     def told(self, text):
         return any(text in message for message in self.messages)
 
-    def wait_told(self, text, seconds=20):
+    def wait_told(self, text, seconds=60):
         self.wait(lambda s: self.told(text), f"a message contains '{text}'", seconds)
 
     def end_samples(self):
@@ -345,7 +345,7 @@ def survives_a_guard_that_is_killed(m):
 @scenario
 def follows_the_operator(m):
     """Pause, abort, MDI, and what was cut before an abort."""
-    write(m.folder + "/a.ngc", HEAD + "G61\nG0 X-70 Y0 Z10\nZ-5\nG1 F3000 X20\nG0 Z20\nX113\nM2\n")
+    write(m.folder + "/a.ngc", HEAD + "G61\nG0 X-70 Y0 Z10\nZ-5\nG1 F1000 X20\nG0 Z20\nX113\nM2\n")
     m.start_guard()
     m.run("a.ngc")
     m.wait(lambda s: s.position[2] < -104.9 and s.position[0] > -40, "it cuts")

@@ -338,12 +338,17 @@ static void drop_calls(TP_STRUCT *tp) {
     feeler_store(&ring->dropped, ring->written);
 }
 
+/* Stops, and lets LinuxCNC end the program at the next motion, which would start elsewhere. */
+static void end_program(TP_STRUCT *tp) {
+    tpAbort(tp);
+    was_refused = 1;
+}
+
 /* The planner refused a motion that was accepted. What follows would start elsewhere. */
 static void fail(TP_STRUCT *tp, struct call const *c, int code) {
     rtapi_print_msg(RTAPI_MSG_ERR, "feeler_tp: the planner refuses the motion of line %d (code %d)\n",
                     c->tag.fields[GM_FIELD_LINE_NUMBER], code);
-    was_refused = 1;
-    tpAbort(tp);
+    end_program(tp);
 }
 
 static void release_permitted(TP_STRUCT *tp) {
@@ -397,7 +402,7 @@ int tpRunCycle(TP_STRUCT *const tp, long period) {
     if (!is_aborting) release_permitted(tp);
     int const was_busy = !real_tpIsDone(tp);
     /* What has been released would be made elsewhere. */
-    if (was_busy && !is_aborting && has_external_offset()) tpAbort(tp);
+    if (was_busy && !is_aborting && has_external_offset()) end_program(tp);
     if (is_pausing && !is_aborting) real_tpPause(tp);
     uint64_t const before = executing(tp);
     int const result = real_tpRunCycle(tp, period);
@@ -490,6 +495,7 @@ int tpClear(TP_STRUCT *const tp) {
 int tpAbort(TP_STRUCT *const tp) {
     drop_calls(tp);
     is_aborting = 1;
+    was_refused = 0; /* the operator's abort ends the program, too */
     return real_tpAbort(tp);
 }
 
