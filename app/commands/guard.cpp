@@ -2,7 +2,6 @@
 
 #include <cctype>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "app/base/shipped_files.h"
-#include "app/base/text.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
@@ -20,12 +18,9 @@
 #include "app/guard/control_state.h"
 #include "app/guard/motion_log.h"
 #include "app/setup/ini_file.h"
-#include "app/setup/linuxcnc_kinematics.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
-#include "core/base/file_reads.h"
 #include "core/base/platform.h"
-#include "core/base/units.h"
 
 namespace app {
 namespace {
@@ -205,7 +200,7 @@ void GuardRun::open_log() {
 }
 
 void GuardRun::tell(const std::string& text) {
-    std::fputs(printable(text + "\n").c_str(), stderr);
+    print_note(text + "\n");
     // LinuxCNC's messages hold 255 characters.
     constexpr size_t most = 250;
     for (std::string rest = text; !rest.empty();) {

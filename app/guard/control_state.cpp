@@ -5,19 +5,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/setup/control/offset_differences.h"
 #include "app/setup/setup_file.h"
 #include "gcode/language/canonical.h"
 
 namespace app {
-namespace {
-
-bool states(const SetupFile& setup, size_t offset) {
-    if (setup.offsets_set.contains(static_cast<int>(offset))) return true;
-    return !setup.infers_frame && setup.environment.work_offset(offset) != gcode::AxisValues{};
-}
-
-} // namespace
-
 core::Result<ControlState> read_control_state(std::string_view line) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     ControlState state;
@@ -40,7 +32,7 @@ std::string difference(const SetupFile& setup, const ControlState& control, doub
         return "LinuxCNC does not say which work offset it uses: select one, for example by G54.";
     const auto index = static_cast<size_t>(control.work_offset - 1);
     const std::string name = gcode::name_of_offset(index);
-    if (!states(setup, index))
+    if (!states_work_offset(setup, index))
         return fmt::format("{} is in use, and the set-up does not state it.", name);
     const gcode::AxisValues stated = setup.environment.work_offset(index);
     for (size_t axis = 0; axis < core::axis_count; ++axis) {

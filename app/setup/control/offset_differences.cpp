@@ -58,7 +58,6 @@ private:
     void compare_shift();
     void compare_lengths();
     void compare_diameters();
-    bool states(size_t index) const;
     std::optional<double> length_in_setup(core::OffsetNumber number) const;
     std::optional<double> diameter_in_setup(core::OffsetNumber number) const;
     bool guesses_length(core::ToolNumber number) const;
@@ -84,18 +83,12 @@ ComparedOffset& Comparison::add(std::string name, bool is_angle, std::optional<d
     return found_.values.emplace_back(std::move(row));
 }
 
-/// Whether the set-up, or the variables file that it names, states a work offset.
-bool Comparison::states(size_t index) const {
-    if (setup_.offsets_set.contains(static_cast<int>(index))) return true;
-    return !setup_.infers_frame && setup_.environment.work_offset(index) != gcode::AxisValues{};
-}
-
 void Comparison::compare_work_offset(size_t index) {
     const auto found = control_.work.find(index);
     const ControlOrigin origin = found == control_.work.end() ? ControlOrigin{} : found->second;
     const gcode::AxisValues stated = setup_.environment.work_offset(index);
     const std::string name = gcode::name_of_offset(index);
-    const bool is_stated = states(index);
+    const bool is_stated = states_work_offset(setup_, index);
     for (size_t axis = 0; axis < core::axis_count; ++axis) {
         const auto control = in_effect(origin.axes[axis], control_.external.axes[axis]);
         const bool matters = axis < 3 || stated[axis] != 0.0 || (control && control->value != 0.0);
@@ -230,6 +223,11 @@ size_t OffsetComparison::differences() const {
         std::count_if(values.begin(), values.end(), [](const ComparedOffset& value) {
             return value.state != OffsetState::equal;
         }));
+}
+
+bool states_work_offset(const SetupFile& setup, size_t index) {
+    if (setup.offsets_set.contains(static_cast<int>(index))) return true;
+    return !setup.infers_frame && setup.environment.work_offset(index) != gcode::AxisValues{};
 }
 
 OffsetComparison differences(const SetupFile& setup, const ControlOffsets& control,

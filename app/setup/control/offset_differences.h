@@ -43,6 +43,9 @@ struct OffsetComparison {
     size_t differences() const;
 };
 
+/// Whether the set-up, or the variables file that it names, states a work offset; index 0 is G54.
+bool states_work_offset(const SetupFile& setup, size_t index);
+
 /// Compares the offsets that the set-up states or the program uses. Values of the control that
 /// matter to neither are left out, and so are kinds of values that no file has: a variables file
 /// says nothing about lengths.

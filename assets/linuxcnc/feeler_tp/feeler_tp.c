@@ -105,6 +105,13 @@ static unsigned first_call, call_count, motion_count; /* motions among the calls
 static struct call *call_at(unsigned i) { return &calls[(first_call + i) % CALLS]; }
 static int is_motion(struct call const *c) { return c->what <= ADD_TAP; }
 
+/* The first motion that waits; there must be one. */
+static struct call *first_motion(void) {
+    unsigned i = 0;
+    while (!is_motion(call_at(i))) ++i;
+    return call_at(i);
+}
+
 static struct call *new_call(enum what what) {
     if (call_count == CALLS) return NULL;
     struct call *c = call_at(call_count++);
@@ -388,12 +395,7 @@ static void show_state(TP_STRUCT *tp) {
     *pins->guard_alive = alive != 0 && now - alive_at < 1000000000LL;
     *pins->latched = feeler_load(&ring->latched) != 0;
     *pins->holding = motion_count > 0 && real_tpIsDone(tp);
-    if (motion_count > 0)
-        for (unsigned i = 0; i < call_count; ++i)
-            if (is_motion(call_at(i))) {
-                *pins->line = call_at(i)->tag.fields[GM_FIELD_LINE_NUMBER];
-                break;
-            }
+    if (motion_count > 0) *pins->line = first_motion()->tag.fields[GM_FIELD_LINE_NUMBER];
     if (*pins->clear && !was_clear_pressed) feeler_store(&ring->cleared, ring->cleared + 1);
     was_clear_pressed = *pins->clear;
 }
@@ -522,10 +524,7 @@ int tpActiveDepth(TP_STRUCT *const tp) {
 
 /* The first motion that waits, if the planner has none. */
 static struct call *waiting_motion(TP_STRUCT *tp) {
-    if (motion_count == 0 || !real_tpIsDone(tp)) return NULL;
-    unsigned i = 0;
-    while (!is_motion(call_at(i))) ++i;
-    return call_at(i);
+    return motion_count > 0 && real_tpIsDone(tp) ? first_motion() : NULL;
 }
 
 int tpGetExecId(TP_STRUCT *const tp) {
