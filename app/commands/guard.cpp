@@ -43,14 +43,15 @@ core::Result<SetupFile> complete_setup(const std::string& path) {
     const auto has = [&](const std::string& what) {
         return core::fail_file(path, "the guard does not follow " + what);
     };
-    if (setup.needs_stock || setup.is_partial) return lacks("the stock");
+    if (setup.infers_frame || setup.offsets_set.empty())
+        return lacks("the work offsets in machine coordinates");
+    if (setup.needs_stock) return lacks("the stock");
+    if (setup.is_partial) return lacks("a job: work offsets, tools and the stock");
     if (setup.setup.tools.empty()) return lacks("the tools with their sizes, under [[tool]]");
     if (!setup.partial_tools.empty()) return lacks("all sizes of its tools");
     if (!setup.assumed.empty()) return lacks("what it calls assumed");
     if (!setup.setup.fixture_moves.empty())
         return has("fixtures that are moved ([[fixture.move]])");
-    if (setup.infers_frame || setup.offsets_set.empty())
-        return lacks("the work offsets in machine coordinates");
     if (!setup.offsets_of_bodies.empty())
         return lacks("the place of its bodies: they stand in a work offset that it does not state");
     return setup;

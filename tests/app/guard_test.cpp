@@ -1143,6 +1143,29 @@ TEST(GuardedPrograms, AreRepeatedByTheirLogs) {
     EXPECT_GT(in_all, 10000.0);
 }
 
+/// What it says before it watches anything.
+TEST(GuardCommand, NamesWhatItCannotWorkWith) {
+    const test_support::ScopedFolder folder;
+    const auto refusal = [&](std::string text, const std::string& ini) {
+        const std::string setup = folder.write("mill.toml", text);
+        const auto ran = feeler(
+            {"guard", "--setup", setup, "--ini", folder.write("mill.ini", ini), "--wait", "0"});
+        EXPECT_EQ(ran.status, 2) << ran.err;
+        return ran.err;
+    };
+    const std::string ini = "[KINS]\nKINEMATICS = trivkins\n";
+    const auto without = [](std::string text, const std::string& from, const std::string& to) {
+        const size_t begin = text.find(from);
+        return text.erase(begin, text.find(to, begin + 1) - begin);
+    };
+    EXPECT_THAT(refusal(without(setup_text, "[stock]", "[[fixture]]"), ini), HasSubstr("stock"));
+    EXPECT_THAT(refusal(without(setup_text, "[offsets]", "[stock]"), ini),
+                HasSubstr("work offsets"));
+    EXPECT_THAT(refusal(without(setup_text, "[[tool]]", "\n\n"), ini), HasSubstr("tools"));
+    EXPECT_THAT(refusal(setup_text, "[KINS]\nKINEMATICS = xyzac-trt-kins\n"),
+                AllOf(HasSubstr("xyzac-trt-kins"), HasSubstr("trivkins")));
+}
+
 TEST(MotionLog, WritesARefusalBehindTheMotionsBeforeIt) {
     const test_support::ScopedFolder folder;
     const app::SetupFile setup = setup_of(setup_text);
