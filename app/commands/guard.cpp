@@ -16,9 +16,9 @@
 #include "app/commands/progress.h"
 #include "app/commands/suggestion.h"
 #include "app/guard/control_state.h"
+#include "app/guard/live_setup.h"
 #include "app/guard/motion_log.h"
 #include "app/setup/ini_file.h"
-#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "core/base/platform.h"
 
@@ -33,29 +33,6 @@ struct GuardOptions {
     double tolerance = 0.01, feed_tolerance = 0.1;
     double wait = 60.0;
 };
-
-/// The set-up of a machine that is running: complete, since nothing is inferred from a program.
-core::Result<SetupFile> complete_setup(const std::string& path) {
-    FEELER_TRY(SetupFile setup, read_setup(path, {}));
-    const auto lacks = [&](const std::string& what) {
-        return core::fail_file(path, "the guard needs a set-up that states " + what);
-    };
-    const auto has = [&](const std::string& what) {
-        return core::fail_file(path, "the guard does not follow " + what);
-    };
-    if (setup.infers_frame || setup.offsets_set.empty())
-        return lacks("the work offsets in machine coordinates");
-    if (setup.needs_stock) return lacks("the stock");
-    if (setup.is_partial) return lacks("a job: work offsets, tools and the stock");
-    if (setup.setup.tools.empty()) return lacks("the tools with their sizes, under [[tool]]");
-    if (!setup.partial_tools.empty()) return lacks("all sizes of its tools");
-    if (!setup.assumed.empty()) return lacks("what it calls assumed");
-    if (!setup.setup.fixture_moves.empty())
-        return has("fixtures that are moved ([[fixture.move]])");
-    if (!setup.offsets_of_bodies.empty())
-        return lacks("the place of its bodies: they stand in a work offset that it does not state");
-    return setup;
-}
 
 /// The ini file, if its machine is one that the guard can follow.
 core::Result<IniFile> known_ini(const std::string& path) {
@@ -287,7 +264,7 @@ std::string GuardRun::summary() const {
 }
 
 core::Result<ExitCode> guard_machine(const GuardOptions& options) {
-    FEELER_TRY(SetupFile setup, complete_setup(options.setup));
+    FEELER_TRY(SetupFile setup, read_live_setup(options.setup, "the guard"));
     FEELER_TRY(const IniFile ini, known_ini(options.ini));
     const double unit = ini.machine_unit == gcode::LengthUnit::inch ? 25.4 : 1.0;
     take_speeds(setup.setup.machine, ini, unit);

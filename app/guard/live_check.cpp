@@ -12,9 +12,8 @@
 namespace app {
 namespace {
 
-constexpr double same_place = 1e-6;        // mm or degrees
-constexpr double retreat_tolerance = 0.01; // mm
-constexpr double full_turn = 1e-6;         // an arc that ends this close to its start, radians
+constexpr double same_place = 1e-6; // mm or degrees
+constexpr double full_turn = 1e-6;  // an arc that ends this close to its start, radians
 
 core::AxisValues axis_values(const double (&numbers)[core::axis_count]) {
     core::AxisValues values;
@@ -136,41 +135,6 @@ core::Motion line_of(const feeler_segment& motion, const core::Machine& machine)
     return line;
 }
 
-/// What made a motion not clear, for the operator: the first error, else the first warning.
-const core::Finding* worst_finding(const core::BlockResult& result) {
-    const core::Finding* worst = nullptr;
-    for (const core::Finding& finding : result.findings)
-        if (finding.severity != core::Severity::off
-            && (!worst || finding.severity > worst->severity))
-            worst = &finding;
-    return worst;
-}
-
-bool has_error(const core::BlockResult& result) {
-    return std::any_of(result.findings.begin(), result.findings.end(), [](const auto& finding) {
-        return finding.severity == core::Severity::error;
-    });
-}
-
-bool is_clear(const core::BlockResult& result) {
-    return result.checked && result.verdict == core::Verdict::clear && !has_error(result);
-}
-
-/// Whether only Z moves, upwards.
-bool is_straight_up(const feeler_segment& motion) {
-    for (size_t i = 0; i < core::axis_count; ++i)
-        if (i != 2 && std::abs(motion.to[i] - motion.from[i]) > same_place) return false;
-    return motion.shape == FEELER_LINE && motion.to[2] >= motion.from[2];
-}
-
-/// Brings a run to a place without a motion.
-void put_at(core::SimulatorState& state, const core::AxisPosition& position) {
-    state.position = position;
-    state.spread = {};
-    state.corners.last = {};
-    state.memory.bounds.clear();
-}
-
 } // namespace
 
 bool is_after_drop(const feeler_segment& motion) {
@@ -188,40 +152,22 @@ feeler_segment in_mm(feeler_segment motion, double unit) {
     return motion;
 }
 
-LiveCheck::LiveCheck(const core::Setup& setup) : setup_(setup) {
-    setup_.search_limit = core::search_limit_of(setup);
-    // What LinuxCNC does at corners is in the ring.
-    setup_.machine.corner_tolerance = 0.0;
-    setup_.machine.rapid_corner_tolerance.reset();
-    thorough_ = setup_;
-    setup_.detail = core::Detail::verdict;
-    thorough_.detail = core::Detail::every_pair;
-}
-
-/// Runs events as a block. Without measuring, they are taken to be clear.
-core::BlockResult LiveCheck::run(const core::Setup& setup, std::vector<core::Event> events,
-                                 core::SimulatorState& state, bool measures) {
-    const core::Judgement clear;
-    return core::run_block(setup,
-                           {.block = core::BlockIndex{block_++},
-                            .events = events,
-                            .judgement = measures ? nullptr : &clear},
-                           state);
-}
+// What LinuxCNC does at corners is in the ring.
+LiveCheck::LiveCheck(const core::Setup& setup) : judge_(setup) {}
 
 /// The tool, the spindle and the path mode, where the motion has others than the state, and the
 /// motion.
 std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
                                               const core::SimulatorState& state) const {
     std::vector<core::Event> events;
-    const std::optional<core::ToolNumber> tool = tool_of(motion, setup_);
+    const std::optional<core::ToolNumber> tool = tool_of(motion, judge_.setup());
     if (!state.tool_known || state.tool != tool) events.emplace_back(core::ToolChange{tool});
     const core::SpindleChange spindle = spindle_of(motion);
     if (spindle.direction != state.spindle.direction || spindle.speed != state.spindle.speed)
         events.emplace_back(spindle);
     events.emplace_back(path_mode_of(motion));
 
-    core::Motion there = line_of(motion, setup_.machine);
+    core::Motion there = line_of(motion, judge_.setup().machine);
     if (motion.shape == FEELER_ARC) {
         const int normal = *main_axis(vector_of(motion.normal));
         const core::ArcPath arc = arc_of(motion, normal, axis_values(motion.to));
@@ -242,7 +188,7 @@ std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
 }
 
 void LiveCheck::make(const Permitted& motion) {
-    run(setup_, events_of(motion.checked, *made_), *made_, false);
+    judge_.follow(events_of(motion.checked, *made_), *made_);
     if (after_motion) after_motion(motion.queued);
 }
 
@@ -280,13 +226,13 @@ void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& 
     } else {
         path.path_error += distance_to_segment(there, from, to);
     }
-    run(setup_, std::move(events), *made_, false);
+    judge_.follow(events, *made_);
     if (after_motion) after_motion(part);
 }
 
 /// Notes where a motion was stopped, and takes nothing for cut.
 void LiveCheck::leave(const feeler_segment& part) {
-    put_at(*made_, position_of(axis_values(part.to), setup_.machine));
+    put_at(*made_, position_of(axis_values(part.to), judge_.setup().machine));
     if (after_motion) after_motion(part);
 }
 
@@ -301,12 +247,12 @@ bool LiveCheck::catch_up(uint64_t begun, size_t most) {
 /// Brings the state to the place where the motion begins.
 core::Result<void> LiveCheck::place(const feeler_segment& motion) {
     const core::AxisValues from = axis_values(motion.from);
-    const core::AxisPosition position = position_of(from, setup_.machine);
+    const core::AxisPosition position = position_of(from, judge_.setup().machine);
     if (!ahead_) {
-        FEELER_TRY(core::SimulatorState state, core::start_of_run(setup_, position));
+        FEELER_TRY(core::SimulatorState state, core::start_of_run(judge_.setup(), position));
         state.is_assumed = {};
         // The machine comes to the guard with its tool: that is no tool change.
-        state.tool = tool_of(motion, setup_);
+        state.tool = tool_of(motion, judge_.setup());
         state.tool_known = true;
         made_ = state;
         ahead_ = std::move(state);
@@ -352,13 +298,13 @@ std::string LiveCheck::objection(const feeler_segment& motion) const {
                "ran.";
     if (motion.tool < 0)
         return "The tool in the spindle is not known: feeler-tp.tool-number is not connected.";
-    if (motion.tool > 0 && !setup_.tools.contains(core::ToolNumber{motion.tool}))
+    if (motion.tool > 0 && !judge_.setup().tools.contains(core::ToolNumber{motion.tool}))
         return fmt::format("The set-up does not describe tool {}.", motion.tool);
-    if (!tool_of(motion, setup_) && motion.purpose != FEELER_RAPID
+    if (!tool_of(motion, judge_.setup()) && motion.purpose != FEELER_RAPID
         && motion.purpose != FEELER_TOOL_CHANGE)
         return "The control says that there is no tool in the spindle (M61 Q tells it which).";
     for (size_t i = 0; i < core::axis_count; ++i)
-        if (!setup_.machine.axes[i].present && std::abs(motion.to[i]) > same_place)
+        if (!judge_.setup().machine.axes[i].present && std::abs(motion.to[i]) > same_place)
             return fmt::format("Axis {} is not at 0, and the set-up has no such axis.",
                                core::axis_letters[i]);
     if (motion.shape == FEELER_ARC && !main_axis(vector_of(motion.normal)))
@@ -366,15 +312,9 @@ std::string LiveCheck::objection(const feeler_segment& motion) const {
     return {};
 }
 
-LiveAnswer LiveCheck::refused(std::string reason, std::string cure) {
+LiveAnswer LiveCheck::refused(LiveAnswer answer) {
     is_refused_ = true;
-    return {.reason = std::move(reason), .cure = std::move(cure)};
-}
-
-LiveAnswer LiveCheck::refused(const core::BlockResult& result) {
-    const core::Finding* const finding = worst_finding(result);
-    if (!finding) return refused("Its clearance cannot be proven.");
-    return refused(finding->message, finding->cure);
+    return answer;
 }
 
 LiveAnswer LiveCheck::permitted(const feeler_segment& queued, const feeler_segment& checked) {
@@ -389,39 +329,6 @@ std::string LiveCheck::begin(const feeler_segment& motion) {
     if (std::string why = objection(motion); !why.empty()) return why;
     if (auto placed = place(motion); !placed) return placed.error().message;
     return {};
-}
-
-/// What is wrong with a rapid if the spindle that the control takes for empty holds one of the
-/// tools after all: it does not know them when it starts.
-std::optional<core::BlockResult> LiveCheck::problem_with_a_tool(const feeler_segment& motion) {
-    for (const auto& [number, assembly] : setup_.tools) {
-        core::SimulatorState state = *ahead_;
-        state.tool = number;
-        state.memory.bounds.clear(); // they are of another tool
-        feeler_segment with_tool = motion;
-        with_tool.tool = core::value_of(number);
-        core::BlockResult result = run(setup_, events_of(with_tool, state), state, true);
-        if (!is_clear(result)) return result;
-    }
-    return {};
-}
-
-/// What is wrong with a probing motion if the work is not where it should be: all but the flutes
-/// must be clear on the whole way, and the flutes of all but the stock.
-std::string LiveCheck::problem_beyond_contact(const feeler_segment& motion) {
-    core::SimulatorState state = *ahead_;
-    feeler_segment whole = motion;
-    whole.purpose = FEELER_FEED;
-    const core::BlockResult result = run(thorough_, events_of(whole, state), state, true);
-    for (const core::PairClearance& pair : result.pairs) {
-        const bool may_touch = pair.pair.part == core::PartKind::flutes && !pair.pair.fixture;
-        if (!may_touch && pair.verdict != core::Verdict::clear)
-            return fmt::format("If the probe does not touch the work, it brings {} and {} too near "
-                               "to each other.",
-                               core::part_name(setup_, pair.pair),
-                               core::body_name(setup_, pair.pair));
-    }
-    return result.checked ? "" : "Its clearance cannot be proven.";
 }
 
 /// The motion with how far the corner at its start may be rounded: by the mode of the one before,
@@ -444,60 +351,35 @@ feeler_segment LiveCheck::with_corner(feeler_segment motion) const {
 }
 
 LiveAnswer LiveCheck::judge(const feeler_segment& queued) {
-    if (std::string why = begin(queued); !why.empty()) return refused(std::move(why));
+    if (std::string why = begin(queued); !why.empty()) return refused({.reason = std::move(why)});
     const feeler_segment motion = with_corner(queued);
-    if (!tool_of(motion, setup_))
-        if (const auto problem = problem_with_a_tool(motion)) return refused(*problem);
+    const std::vector<core::Event> events = events_of(motion, *ahead_);
+    // The control does not know its tool when it starts.
+    if (!tool_of(motion, judge_.setup())) {
+        LiveAnswer answer = judge_.judge_with_each_tool(events, *ahead_);
+        if (!answer.may_move) return refused(std::move(answer));
+    }
     if (motion.purpose == FEELER_PROBE)
-        if (std::string why = problem_beyond_contact(motion); !why.empty())
-            return refused(std::move(why));
-    const core::BlockResult result = run(setup_, events_of(motion, *ahead_), *ahead_, true);
-    return is_clear(result) ? permitted(queued, motion) : refused(result);
+        if (std::string why = judge_.problem_beyond_contact(events, *ahead_); !why.empty())
+            return refused({.reason = std::move(why)});
+    LiveAnswer answer = judge_.judge(events, *ahead_);
+    return answer.may_move ? permitted(queued, motion) : refused(std::move(answer));
 }
 
 LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
-    if (std::string why = begin(motion); !why.empty()) return refused(std::move(why));
-    if (!tool_of(motion, setup_))
-        if (const auto problem = problem_with_a_tool(motion)) return refused(*problem);
-    feeler_segment rest = motion, still = motion;
-    rest.shape = FEELER_LINE;
-    rest.purpose = FEELER_RAPID;
-    std::copy(std::begin(rest.from), std::end(rest.from), std::begin(rest.to));
-    still.turns_on = rest.turns_on = 0;                             // a retreat cuts nothing
-    if (still.purpose == FEELER_PROBE) still.purpose = FEELER_FEED; // all of it
-    core::SimulatorState now = *ahead_;
-    const core::BlockResult before = run(thorough_, events_of(rest, now), now, true);
-    const core::BlockResult result = run(thorough_, events_of(still, *ahead_), *ahead_, true);
-    // Out of what it has cut, or of what the set-up still takes for stock.
-    const bool goes_up = is_straight_up(motion);
-    // Bounds of a motion include what the control may round off; those at rest do not.
-    const double slack =
-        retreat_tolerance + (motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0);
-    const auto comes_nearer = [&](const core::PairClearance& pair) {
-        const auto known = std::find_if(before.pairs.begin(), before.pairs.end(),
-                                        [&](const auto& one) { return one.pair == pair.pair; });
-        const bool is_known = known != before.pairs.end();
-        const bool is_within = is_known && known->verdict == core::Verdict::collision;
-        if (goes_up && is_within && !pair.pair.fixture) return false;
-        if (pair.verdict == core::Verdict::collision) return true;
-        const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
-        const double at_rest = is_known ? known->lower : core::infinity;
-        return pair.lower < limit && pair.lower < at_rest - slack;
-    };
-    const auto nearer = std::find_if(result.pairs.begin(), result.pairs.end(), comes_nearer);
-    const auto is_other_error = [](const core::Finding& finding) {
-        return finding.severity == core::Severity::error && finding.pair[0].empty();
-    };
-    const auto other = std::find_if(result.findings.begin(), result.findings.end(), is_other_error);
-    if (other != result.findings.end()) return refused(other->message, other->cure);
-    if (result.checked && nearer == result.pairs.end()) return permitted(motion, motion);
-    const std::string why = nearer == result.pairs.end()
-                                ? std::string("Its clearance cannot be proven.")
-                                : fmt::format("It brings {} and {} nearer to each other.",
-                                              core::part_name(setup_, nearer->pair),
-                                              core::body_name(setup_, nearer->pair));
-    return refused(why, "After a violation, only motions that lose no clearance may be made until "
-                        "feeler-tp.clear is set.");
+    if (std::string why = begin(motion); !why.empty()) return refused({.reason = std::move(why)});
+    const std::vector<core::Event> events = events_of(motion, *ahead_);
+    if (!tool_of(motion, judge_.setup())) {
+        LiveAnswer answer = judge_.judge_with_each_tool(events, *ahead_);
+        if (!answer.may_move) return refused(std::move(answer));
+    }
+    const double rounding = motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0;
+    LiveAnswer answer = judge_.judge_retreat(events, rounding, *ahead_);
+    if (answer.may_move) return permitted(motion, motion);
+    if (answer.cure.empty())
+        answer.cure = "After a violation, only motions that lose no clearance may be made until "
+                      "feeler-tp.clear is set.";
+    return refused(std::move(answer));
 }
 
 } // namespace app

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/guard/motion_judge.h"
 #include "assets/linuxcnc/feeler_tp/feeler_ring.h"
 #include "core/base/result.h"
 #include "core/sim/run/simulator.h"
@@ -20,13 +21,6 @@ feeler_segment in_mm(feeler_segment motion, double unit);
 /// Whether the control has dropped motions before this one, so that it does not begin where the one
 /// with the number before it would end.
 bool is_after_drop(const feeler_segment& motion);
-
-/// What the guard says about a motion.
-struct LiveAnswer {
-    bool may_move = false;
-    std::string reason = {}; // why it may not: one or two sentences for the operator
-    std::string cure = {};   // how to go on; may be empty
-};
 
 /// Checks the motions of a running machine one by one, before they are made, against fixtures,
 /// machine bodies and the stock as it is cut. Bodies, bounds and rules are those of a check of the
@@ -74,22 +68,15 @@ private:
     std::string objection(const feeler_segment& motion) const;
     std::vector<core::Event> events_of(const feeler_segment& motion,
                                        const core::SimulatorState& state) const;
-    core::BlockResult run(const core::Setup& setup, std::vector<core::Event> events,
-                          core::SimulatorState& state, bool measures);
-    std::optional<core::BlockResult> problem_with_a_tool(const feeler_segment& motion);
-    std::string problem_beyond_contact(const feeler_segment& motion);
     feeler_segment with_corner(feeler_segment motion) const;
     LiveAnswer permitted(const feeler_segment& queued, const feeler_segment& checked);
-    LiveAnswer refused(std::string reason, std::string cure = {});
-    LiveAnswer refused(const core::BlockResult& result);
+    LiveAnswer refused(LiveAnswer answer);
 
-    core::Setup setup_;                         // measures only what a verdict needs
-    core::Setup thorough_;                      // measures every pair
+    MotionJudge judge_;
     std::optional<core::SimulatorState> ahead_; // after all motions that may move
     std::optional<core::SimulatorState> made_;  // after those that have been made
     std::deque<Permitted> waiting_;             // what is in `ahead_` and not in `made_`
     bool is_refused_ = false;                   // until the control drops what it has queued
-    uint32_t block_ = 0;
 };
 
 } // namespace app
