@@ -70,6 +70,7 @@ int run(const std::vector<std::string>& words) {
     app::add_sheet(cli, exit_code);
     app::add_filter(cli, exit_code);
     app::add_guard(cli, exit_code);
+    app::add_gate(cli, exit_code);
     app::add_merge(cli, exit_code);
     app::add_history(cli, exit_code);
     app::add_diff(cli, exit_code);

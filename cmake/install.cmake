@@ -39,7 +39,7 @@ install(FILES ${PROJECT_BINARY_DIR}/app/report/html/view/node_modules/three/LICE
 if(WIN32)
   install(FILES ${FEELER_DEPS_LICENCES} DESTINATION ${licences})
 else()
-  foreach(package libcli11-dev libexpected-dev libglm-dev libimgui-dev nlohmann-json3-dev)
+  foreach(package libasio-dev libcli11-dev libexpected-dev libglm-dev libimgui-dev nlohmann-json3-dev)
     install(FILES /usr/share/doc/${package}/copyright DESTINATION ${licences} RENAME ${package}.txt OPTIONAL)
   endforeach()
 endif()

@@ -14,7 +14,7 @@ import documentation
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 VERSION = re.search(r"^project\(feeler VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"),
                     flags=re.M)[1]
-IN_EACH = {"musl.txt", "libglm-dev.txt", "libexpected-dev.txt", "libcli11-dev.txt", "nlohmann-json3-dev.txt"}
+IN_EACH = {"musl.txt", "libglm-dev.txt", "libexpected-dev.txt", "libasio-dev.txt", "libcli11-dev.txt", "nlohmann-json3-dev.txt"}
 IN_ARCHIVES = {"fonts-inter.txt", "fonts-jetbrains-mono.txt", "fonts-font-awesome.txt"}
 IN_WINDOWS = {"imgui.txt", "freetype.txt", "sqlite.txt", "gcc.txt", "mingw-w64.txt"}
 # What a driver of the system needs in its own version.

@@ -25,6 +25,7 @@ void add_bench(CLI::App& cli, ExitCode& exit_code);
 void add_view(CLI::App& cli, ExitCode& exit_code);
 void add_shot(CLI::App& cli, ExitCode& exit_code);
 void add_filter(CLI::App& cli, ExitCode& exit_code);
+void add_gate(CLI::App& cli, ExitCode& exit_code);
 void add_guard(CLI::App& cli, ExitCode& exit_code);
 void add_sheet(CLI::App& cli, ExitCode& exit_code);
 void add_merge(CLI::App& cli, ExitCode& exit_code);

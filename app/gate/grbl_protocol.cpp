@@ -41,10 +41,6 @@ std::optional<core::Vec3> vector_of(std::string_view text) {
     return value;
 }
 
-bool begins_with(std::string_view text, std::string_view start) {
-    return text.substr(0, start.size()) == start;
-}
-
 bool has_axis_word(std::string_view line) {
     return line.find_first_of("XYZABCUVW") != std::string_view::npos;
 }
@@ -70,7 +66,7 @@ std::string as_grbl_reads(std::string_view line) {
 
 GrblLine kind_of(std::string_view text) {
     if (text.empty()) return GrblLine::empty;
-    if (begins_with(text, "$J=")) return GrblLine::jog;
+    if (text.starts_with("$J=")) return GrblLine::jog;
     if (text == "$X") return GrblLine::unlock;
     if (text == "$H") return GrblLine::home;
     for (const std::string_view request : {"$", "$$", "$#", "$G", "$I", "$N", "$C", "$SLP"})
@@ -96,8 +92,8 @@ std::optional<GrblStatus> read_status(std::string_view line) {
     GrblStatus status;
     status.state = fields[0].substr(0, fields[0].find(':'));
     for (const std::string_view field : fields) {
-        if (begins_with(field, "MPos:")) status.mpos = vector_of(field.substr(5));
-        if (begins_with(field, "WPos:")) status.wpos = vector_of(field.substr(5));
+        if (field.starts_with("MPos:")) status.mpos = vector_of(field.substr(5));
+        if (field.starts_with("WPos:")) status.wpos = vector_of(field.substr(5));
     }
     return status;
 }
@@ -116,7 +112,7 @@ std::optional<size_t> GrblFacts::active() const {
 
 void GrblFacts::take(std::string_view line) {
     const auto offset = [&](std::string_view name, core::Vec3& value, unsigned bit) {
-        if (!begins_with(line, name) || line.back() != ']') return;
+        if (!line.starts_with(name) || line.back() != ']') return;
         const auto read = vector_of(line.substr(name.size(), line.size() - name.size() - 1));
         if (!read) return;
         value = scaled(*read);
@@ -127,7 +123,7 @@ void GrblFacts::take(std::string_view line) {
     offset("[G92:", axis_offset, 6);
     offset("[G28:", home, 7);
     offset("[G30:", second_home, 8);
-    if (begins_with(line, "[TLO:") && line.back() == ']') {
+    if (line.starts_with("[TLO:") && line.back() == ']') {
         // One number for Z, or one for each axis (grblHAL).
         const auto parts = parts_of(line.substr(5, line.size() - 6), ',');
         if (const auto length = number_of(parts[parts.size() >= 3 ? 2 : 0])) {
@@ -135,8 +131,8 @@ void GrblFacts::take(std::string_view line) {
             seen |= 1u << 9;
         }
     }
-    if (begins_with(line, "[GC:")) modes = line.substr(4, line.size() - 5);
-    if (begins_with(line, "[OPT:")) {
+    if (line.starts_with("[GC:")) modes = line.substr(4, line.size() - 5);
+    if (line.starts_with("[OPT:")) {
         const auto parts = parts_of(line.substr(5, line.size() - 6), ',');
         const auto count = [&](size_t i) -> std::optional<size_t> {
             const auto value = i < parts.size() ? number_of(parts[i]) : std::nullopt;
@@ -146,8 +142,8 @@ void GrblFacts::take(std::string_view line) {
         planner = count(1);
         buffer = count(2);
     }
-    if (begins_with(line, "$N") && has_axis_word(line.substr(2))) stored_line = line;
-    if (begins_with(line, "$") && line.find('=') != std::string_view::npos) {
+    if (line.starts_with("$N") && has_axis_word(line.substr(2))) stored_line = line;
+    if (line.starts_with("$") && line.find('=') != std::string_view::npos) {
         const size_t equals = line.find('=');
         const auto value = number_of(line.substr(equals + 1));
         if (!value) return;

@@ -17,7 +17,8 @@ enum class GrblLine : uint8_t {
     jog,     // $J=
     home,    // $H
     unlock,  // $X
-    request, // asks for something or switches a mode; moves nothing: $, $$, $#, $G, $I, $N, $C, $SLP
+    request, // asks for something or switches a mode; moves nothing: $, $$, $#, $G, $I, $N, $C,
+             // $SLP
     other,   // settings and all other commands: $100=250, $N0=, $RST=, [ESP...]
 };
 
@@ -49,13 +50,14 @@ struct GrblFacts {
     std::array<core::Vec3, 6> offsets{}; // G54 to G59
     core::Vec3 home = core::Vec3(0.0), second_home = core::Vec3(0.0), axis_offset = core::Vec3(0.0);
     double length_offset = 0.0;
-    std::string modes;                         // "G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0"
-    std::string stored_line;                   // a start-up line that moves something ($N)
-    std::optional<size_t> planner, buffer;     // blocks, and bytes; empty if not stated
-    core::Vec3 step = core::Vec3(0.0);         // mm; 0: not stated
-    double arc_tolerance = 0.002;              // mm
-    bool reports_inches = false;               // $13
-    unsigned seen = 0;                         // one bit for each of G54 to G59, G92, G28, G30, TLO
+    std::string modes;                     // "G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0"
+    std::string stored_line;               // a start-up line that moves something ($N)
+    std::optional<size_t> planner, buffer; // blocks, and bytes; empty if not stated
+    core::Vec3 step = core::Vec3(0.0);     // mm; 0: not stated
+    double arc_tolerance = 0.002;          // mm
+    bool reports_inches = false;           // $13
+    bool is_reset = false;                 // it was reset since it was asked before
+    unsigned seen = 0;                     // one bit for each of G54 to G59, G92, G28, G30, TLO
     bool has_offsets() const { return seen == 0x3ff; }
     core::Vec3 scaled(core::Vec3 reported) const; // to mm
 

@@ -18,15 +18,17 @@ namespace app {
 
 /// What is said about a line for Grbl.
 struct LineVerdict {
-    LiveAnswer answer;    // whether it may be sent; if not, why
-    int error = 9;        // if not: Grbl's number for the sender
-    bool moves = false;   // it gives the planner at least one motion
+    LiveAnswer answer;          // whether it may be sent; if not, why
+    int error = 9;              // if not: Grbl's number for the sender
+    bool moves = false;         // it has a motion
+    bool fills_planner = false; // it gives the planner at least one block
     bool is_plain = true; // motions and modes alone; any other line waits until all are answered
+    bool changes_offsets = false;  // perhaps
     bool stops_at_contact = false; // a probing motion: where it ends is not known
 };
 
-/// Checks the lines of a sender one by one, as Grbl would run them, against fixtures, machine bodies
-/// and the stock as it is cut.
+/// Checks the lines of a sender one by one, as Grbl would run them, against fixtures, machine
+/// bodies and the stock as it is cut.
 ///
 /// Grbl's coordinates are those of the set-up's machine. A set-up that states no work offsets takes
 /// them from the control: its bodies stand relative to the program's zero.
@@ -47,8 +49,8 @@ public:
     core::Result<void> synchronise(const GrblFacts& facts, const core::Vec3& position,
                                    uint64_t made_through);
 
-    /// Checks a line that Grbl has read (as_grbl_reads): G-code, or $J= with `is_jog`. Those that may
-    /// be sent are taken to be run after the ones before, in the order of their numbers.
+    /// Checks a line that Grbl has read (as_grbl_reads): G-code, or $J= with `is_jog`. Those that
+    /// may be sent are taken to be run after the ones before, in the order of their numbers.
     ///
     /// The first motions after synchronise may also be such that lose no clearance.
     LineVerdict judge(uint64_t number, const std::string& text, bool is_jog);
@@ -77,11 +79,11 @@ private:
 
     LineCheck() = default;
     core::Result<void> place(const GrblFacts& facts, const core::Vec3& position);
-    core::Result<void> begin_stock();
     void take_modes(const GrblFacts& facts, const core::Vec3& position);
     std::string objection(const gcode::Offsets& offsets) const;
     LineVerdict judge_motions(LineVerdict verdict, std::vector<core::Event> events);
     void rewind();
+    size_t cuts() const;
 
     std::string path_, text_; // of the set-up
     double tolerance_ = 0.01;
@@ -91,12 +93,14 @@ private:
     gcode::Environment environment_; // of the control
     gcode::InterpreterState control_;
     gcode::Lowering lowering_;
-    std::optional<core::SimulatorState> ahead_; // behind all lines that may be sent
-    std::optional<core::SimulatorState> made_;  // behind those that have been made
-    std::deque<Permitted> waiting_;             // what is in `ahead_` and not in `made_`
+    std::optional<core::SimulatorState> ahead_;     // behind all lines that may be sent
+    std::optional<core::SimulatorState> made_;      // behind those that have been made
+    std::deque<Permitted> waiting_;                 // what is in `ahead_` and not in `made_`
     std::optional<core::ToolNumber> tool_, called_; // in the spindle; by T
+    core::Vec3 step_ = core::Vec3(0.0);             // of the axes, mm; 0: not known
     double shift_ = 0.0; // mm: Z of the control minus that of the set-up, since a tool change
-    bool tool_was_changed_ = false, has_cut_ = false, may_retreat_ = false;
+    std::optional<size_t> cuts_before_tool_; // at the last tool change
+    bool has_cut_ = false, may_retreat_ = false;
     std::string problem_; // why nothing may move: found when the control was asked
 };
 
