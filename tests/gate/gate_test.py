@@ -7,6 +7,7 @@ The controller (grbl_simulator.py) records the path that its tool really makes. 
 path to bodies are computed here, without Feeler.
 """
 import contextlib
+import json
 import math
 import os
 import random
@@ -336,6 +337,40 @@ def keeps_its_distance_in_random_motion():
     assert passed > 20 * rounds and refused > 5 * rounds
 
 
+def agrees_with_the_check():
+    """The first line that the gate refuses is the first one that feeler check finds fault with."""
+    rng = random.Random(3)
+    stated = BODIES + "[offsets]\nG54 = { X = -200, Y = -150, Z = -60 }\n" + TOOL_1
+    faults = 0
+    for _ in range(6):
+        lines, state = ["G21G90", "M3S1000", "G0Z35", "G0X0Y0"], {}
+        state.update(at=[0.0, 0.0, 35.0], incremental=False, inches=False)
+        for _ in range(60):
+            lines.append(random_line(rng, state))
+            state["at"] = state["next"]
+        with Rig(setup=stated, speed=1000) as rig:
+            program = os.path.join(rig.folder.name, "p.nc")
+            result = os.path.join(rig.folder.name, "p.json")
+            with open(program, "w", encoding="utf-8") as file:
+                file.write("\n".join(lines) + "\n")
+            subprocess.run([FEELER, "check", program, "--setup", rig.setup, "--dialect", "grbl", "--format",
+                            "json", "-o", result], check=False, stderr=subprocess.DEVNULL,
+                           timeout=120)  # clock: gives up
+            with open(result, encoding="utf-8") as file:
+                report = json.load(file)
+            wrong = [block["line"] for block in report["blocks"] if block["verdict"] != "clear"]
+            wrong += [finding["line"] for finding in report["findings"]
+                      if finding["severity"] == "error" and "line" in finding]
+            first = min(wrong, default=None)
+            faults += first is not None
+            for number, line in enumerate(lines, start=1):
+                reply = rig.ask(line)[-1]
+                assert (reply == "ok") == (number != first), (number, line, reply, first, program)
+                if reply != "ok":
+                    break
+    assert 3 <= faults, faults
+
+
 def takes_only_what_was_made_for_cut():
     with Rig(speed=1) as rig:
         rig.expect("G21G90M3S1000")
@@ -630,14 +665,14 @@ def says_what_is_missing():
             file.write(text.replace("mesh_size = 0.5\n", ""))
             file.flush()
             ran = subprocess.run([FEELER, "gate", "--setup", file.name, "--controller", "127.0.0.1:1"],
-                                 capture_output=True, text=True, timeout=60)
+                                 capture_output=True, text=True, timeout=60)  # clock: gives up
             assert ran.returncode == 2 and word in ran.stderr, (word, ran)
     with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
         file.write(BODIES + TOOL_1)
         file.flush()
         for port in ("127.0.0.1:1", "/dev/no-such-port"):
             ran = subprocess.run([FEELER, "gate", "--setup", file.name, "--controller", port],
-                                 capture_output=True, text=True, timeout=60)
+                                 capture_output=True, text=True, timeout=60)  # clock: gives up
             assert ran.returncode == 2 and port in ran.stderr, ran
 
 

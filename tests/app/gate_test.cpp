@@ -1,0 +1,436 @@
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/gate/gate.h"
+#include "app/gate/grbl_protocol.h"
+#include "app/gate/line_check.h"
+#include "tests/support/scoped_folder.h"
+
+namespace app_test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+TEST(GrblProtocol, ReadsLinesAsGrblDoes) {
+    EXPECT_EQ(app::as_grbl_reads("  g0 x1 (go) y-2.5 ; there"), "G0X1Y-2.5");
+    EXPECT_EQ(app::as_grbl_reads("/G1\tX1"), "G1X1");
+    EXPECT_EQ(app::as_grbl_reads("G0(a(b)X1"), "G0X1");
+    EXPECT_EQ(app::as_grbl_reads("(no end G0X1"), "");
+    EXPECT_EQ(app::as_grbl_reads("G0;X1)Y2"), "G0");
+    EXPECT_EQ(app::as_grbl_reads("$J=G91 x5 f100"), "$J=G91X5F100");
+}
+
+TEST(GrblProtocol, TellsLinesApart) {
+    using app::GrblLine;
+    EXPECT_EQ(app::kind_of(""), GrblLine::empty);
+    EXPECT_EQ(app::kind_of("G0X1"), GrblLine::code);
+    EXPECT_EQ(app::kind_of("%"), GrblLine::code);
+    EXPECT_EQ(app::kind_of("$J=X1F5"), GrblLine::jog);
+    EXPECT_EQ(app::kind_of("$X"), GrblLine::unlock);
+    EXPECT_EQ(app::kind_of("$H"), GrblLine::home);
+    EXPECT_EQ(app::kind_of("$#"), GrblLine::request);
+    for (const char* line :
+         {"$HX", "$100=1", "$N0=G0X1", "$RST=$", "$F=A.NC", "[ESP1]", "$J", "#1=2"})
+        EXPECT_EQ(app::kind_of(line), GrblLine::other) << line;
+}
+
+TEST(GrblProtocol, KnowsBytesThatActAtOnce) {
+    for (const int byte : {0x3f, 0x21, 0x7e, 0x18, 0x84, 0x85, 0x90, 0x9e, 0xa0})
+        EXPECT_TRUE(app::acts_at_once(static_cast<char>(byte))) << byte;
+    for (const int byte : {0x47, 0x0a, 0x80, 0x8b, 0xa3, 0xc3}) // 0x8B hands over to a pendant
+        EXPECT_FALSE(app::acts_at_once(static_cast<char>(byte))) << byte;
+    EXPECT_TRUE(app::is_dropped(static_cast<char>(0x8b)));
+    EXPECT_FALSE(app::is_dropped('G'));
+}
+
+TEST(GrblProtocol, ReadsStatusReports) {
+    const auto status = app::read_status("<Hold:0|MPos:1.500,-2.000,3.250|Bf:15,128|FS:0,0>");
+    ASSERT_TRUE(status && status->mpos);
+    EXPECT_EQ(status->state, "Hold");
+    EXPECT_EQ(*status->mpos, core::Vec3(1.5, -2.0, 3.25));
+    EXPECT_FALSE(status->wpos);
+    EXPECT_TRUE(app::read_status("<Idle|WPos:1,2,3,4|FS:0,0>")->wpos); // more axes
+    EXPECT_FALSE(app::read_status("<Idle|MPos:1,2,x|FS:0,0>")->mpos);
+    EXPECT_FALSE(app::read_status("ok"));
+    EXPECT_FALSE(app::read_status("<Idle"));
+}
+
+TEST(GrblProtocol, ReadsWhatAControllerSaysOfItself) {
+    app::GrblFacts facts;
+    for (const char* line :
+         {"[VER:1.1h.20190830:]", "[OPT:V,15,128]", "$12=0.002", "$13=0", "$100=250.000",
+          "$101=80.000", "$102=400.000", "$N0=", "$N1=", "[G54:-200.000,-150.000,-60.000]",
+          "[G55:0.000,0.000,0.000]", "[G56:0.000,0.000,0.000]", "[G57:0.000,0.000,0.000]",
+          "[G58:0.000,0.000,0.000]", "[G59:7.000,0.000,0.000]", "[G28:-1.000,-2.000,-3.000]",
+          "[G30:0.000,0.000,0.000]", "[G92:1.000,0.000,0.000]"})
+        facts.take(line);
+    EXPECT_FALSE(facts.has_offsets());
+    facts.take("[TLO:2.500]");
+    facts.take("[GC:G1 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]");
+    EXPECT_TRUE(facts.has_offsets());
+    EXPECT_EQ(facts.planner, 15U);
+    EXPECT_EQ(facts.buffer, 128U);
+    EXPECT_EQ(facts.step, core::Vec3(0.004, 0.0125, 0.0025));
+    EXPECT_EQ(facts.active(), 0U);
+    EXPECT_EQ(facts.zero(), core::Vec3(-199.0, -150.0, -60.0));
+    EXPECT_EQ(facts.home, core::Vec3(-1.0, -2.0, -3.0));
+    EXPECT_EQ(facts.length_offset, 2.5);
+    EXPECT_EQ(facts.stored_line, "");
+    facts.take("$N1=G0X5");
+    EXPECT_EQ(facts.stored_line, "$N1=G0X5");
+    facts.take("[GC:G1 G59 G17 G20]");
+    EXPECT_EQ(facts.active(), 5U);
+    facts.take("[GC:G1 G17 G20]");
+    EXPECT_FALSE(facts.active());
+}
+
+TEST(GrblProtocol, ReadsReportsInInches) {
+    app::GrblFacts facts;
+    facts.take("$13=1");
+    facts.take("[G54:-10.000,0.000,1.000]");
+    EXPECT_EQ(facts.offsets[0], core::Vec3(-254.0, 0.0, 25.4));
+}
+
+TEST(GrblProtocol, ReadsNothingFromDamagedLines) {
+    app::GrblFacts facts;
+    for (const char* line : {"[G54:1,2", "[G54:]", "[G54:1,2]", "[TLO:]", "[OPT:]", "[OPT:V,x,y]",
+                             "$100=", "$100=x", "$=", "[GC:", "[", "$", ""})
+        facts.take(line);
+    EXPECT_EQ(facts.seen, 0U);
+    EXPECT_FALSE(facts.planner);
+    EXPECT_EQ(facts.step, core::Vec3(0.0));
+}
+
+TEST(GrblProtocol, PutsNoBracketsIntoMessages) {
+    EXPECT_EQ(app::grbl_message("a [b]\nc"), "[MSG:a (b) c]");
+    EXPECT_EQ(app::grbl_error_in("G0: does not run (error 31)"), 31);
+    EXPECT_EQ(app::grbl_error_in("G0: does not run"), 20);
+}
+
+/// A block of 100 x 60 x 20 in the middle of G54, and a clamp beside it.
+const std::string bodies = R"(mesh_size = 0.5
+[stock]
+box = [[-50, -30, -20], [50, 30, 0]]
+[[fixture]]
+name = "clamp"
+box = [[60, -40, -20], [80, 40, 30]]
+[[tool]]
+number = 1
+shape = "flat"
+diameter = 10
+flute_length = 30
+stick_out = 100
+touched_off = 0
+)";
+
+app::GrblFacts
+facts_at_zero(const std::string& modes = "G0 G54 G17 G21 G90 G94 M3 M9 T0 F500 S1000") {
+    app::GrblFacts facts;
+    facts.modes = modes;
+    facts.step = core::Vec3(0.004);
+    facts.planner = 15;
+    facts.seen = 0x3ff;
+    return facts;
+}
+
+class CheckedLines : public ::testing::Test {
+protected:
+    CheckedLines() : check_(open(bodies)) {
+        EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0));
+    }
+
+    app::LineCheck open(const std::string& text) {
+        auto check = app::LineCheck::open(folder_.write("router.toml", text), {}, 0.01);
+        if (!check) throw std::runtime_error(check.error().message);
+        return *std::move(check);
+    }
+    app::LineVerdict judge(const std::string& line, bool is_jog = false) {
+        return check_.judge(++number_, line, is_jog);
+    }
+    bool passes(const std::string& line) { return judge(line).answer.may_move; }
+
+    test_support::ScopedFolder folder_;
+    app::LineCheck check_;
+    uint64_t number_ = 0;
+};
+
+TEST_F(CheckedLines, PassOrNotAsInACheck) {
+    EXPECT_TRUE(passes("G0X53"));
+    const app::LineVerdict verdict = judge("X54Z5");
+    EXPECT_FALSE(verdict.answer.may_move);
+    EXPECT_EQ(verdict.error, 9);
+    EXPECT_THAT(verdict.answer.reason, HasSubstr("clamp"));
+    EXPECT_TRUE(passes("X0")); // from X53, where the refused line began
+}
+
+TEST_F(CheckedLines, KeepTheirModes) {
+    EXPECT_TRUE(passes("G91"));
+    EXPECT_TRUE(passes("G0X30"));
+    EXPECT_FALSE(passes("X30Z-20"));
+    EXPECT_TRUE(passes("G20"));
+    EXPECT_TRUE(passes("X-1"));
+    EXPECT_TRUE(passes("X1.9"));
+    EXPECT_FALSE(passes("X.1Z-1")); // to X55.4 and Z14.6
+    EXPECT_TRUE(passes("M30"));     // G90 G1 G54 G17
+    EXPECT_TRUE(passes("X0"));
+}
+
+TEST_F(CheckedLines, TellWhatGrblRefuses) {
+    EXPECT_EQ(judge("M6").error, 20);
+    EXPECT_EQ(judge("G0A5").error, 20);
+    EXPECT_EQ(judge("#1=5").error, 1);
+    EXPECT_EQ(judge("$J=F100", true).error, 26); // Grbl would go to machine zero
+    EXPECT_TRUE(check_.synchronise(facts_at_zero("G1 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0"),
+                                   core::Vec3(0, 0, 40), number_));
+    EXPECT_EQ(judge("X1").error, 22);
+}
+
+TEST_F(CheckedLines, LeaveNoModesAfterJogs) {
+    EXPECT_TRUE(judge("$J=G91X10F100", true).answer.may_move);
+    EXPECT_TRUE(passes("G0X53")); // G90 still
+    EXPECT_FALSE(judge("$J=G91X1Z-30F100", true).answer.may_move);
+    EXPECT_FALSE(judge("$J=G53X70Z0F100", true).answer.may_move);
+    EXPECT_TRUE(judge("$J=G20G91X-1F10", true).answer.may_move);
+    EXPECT_TRUE(passes("X52"));
+}
+
+TEST_F(CheckedLines, TellWhatFillsThePlanner) {
+    EXPECT_TRUE(judge("G0X1").fills_planner);
+    EXPECT_FALSE(judge("X1").fills_planner);
+    EXPECT_FALSE(judge("X1.003").fills_planner); // less than a step
+    EXPECT_TRUE(judge("X1.003").answer.may_move);
+    EXPECT_FALSE(judge("G4P1").is_plain);
+    EXPECT_FALSE(judge("M5").is_plain);
+    EXPECT_FALSE(judge("G28.1").is_plain);
+    EXPECT_TRUE(judge("N10G1X2F100S500").is_plain);
+    EXPECT_TRUE(judge("G10L2P2X5").changes_offsets);
+}
+
+TEST_F(CheckedLines, CutOnlyWhenTheyWereMade) {
+    EXPECT_TRUE(passes("G0X-60"));
+    EXPECT_TRUE(passes("Z-5"));
+    EXPECT_TRUE(passes("G1X0"));
+    const uint64_t made = number_;
+    EXPECT_TRUE(passes("X40"));
+    EXPECT_TRUE(passes("G0X-60")); // along both
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(-60, 0, -5), made));
+    EXPECT_TRUE(passes("G0X0"));
+    EXPECT_FALSE(passes("X40"));
+}
+
+TEST_F(CheckedLines, MayRetreatOnlyBeforeTheFirstThatIsClear) {
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, -5), 0)); // within the stock
+    EXPECT_FALSE(passes("G0X5"));
+    EXPECT_TRUE(passes("Z5"));
+    EXPECT_TRUE(passes("X20"));
+    EXPECT_FALSE(passes("Z-5"));
+}
+
+/// Grbl with a planner of three blocks that never moves, and a sender.
+class GatedSender : public ::testing::Test {
+protected:
+    GatedSender()
+        : check_(app::LineCheck::open(folder_.write("router.toml", bodies), {}, 0.01).value()) {}
+
+    app::Gate::Links links() {
+        return {[this](std::string_view bytes) { take(bytes, to_sender_, at_sender_); },
+                [this](std::string_view bytes) { at_controller_ += bytes; },
+                [](const std::string&) {},
+                [this](auto work, auto done) {
+                    tasks_.push_back([this, work, done] {
+                        work(check_);
+                        done();
+                    });
+                }};
+    }
+    static void take(std::string_view bytes, std::string& rest, std::vector<std::string>& lines) {
+        rest += bytes;
+        for (size_t end = rest.find("\r\n"); end != std::string::npos; end = rest.find("\r\n")) {
+            lines.push_back(rest.substr(0, end));
+            rest.erase(0, end + 2);
+        }
+    }
+    void check_all() {
+        while (!tasks_.empty()) {
+            const auto task = std::move(tasks_.front());
+            tasks_.pop_front();
+            task();
+        }
+    }
+    std::string answer_to(const std::string& line) {
+        if (line == "$I") return "[OPT:V,3,128]\r\nok\r\n";
+        if (line == "$$") return "$100=250\r\n$101=250\r\n$102=250\r\n$13=0\r\nok\r\n";
+        if (line == "$G") return "[GC:G0 G54 G17 G21 G90 G94 M3 M9 T0 F500 S1000]\r\nok\r\n";
+        if (line != "$#") return "ok\r\n";
+        std::string text;
+        for (const char* name : {"G54", "G55", "G56", "G57", "G58", "G59", "G28", "G30", "G92"})
+            text += fmt::format("[{}:0.000,0.000,0.000]\r\n", name);
+        return text + "[TLO:0.000]\r\nok\r\n";
+    }
+    /// Answers all requests for the status, and up to `most` lines.
+    void play_controller(size_t most = 1000) {
+        check_all();
+        while (true) {
+            const size_t status = at_controller_.find('?');
+            const size_t end = at_controller_.find('\n');
+            if (status != std::string::npos) {
+                at_controller_.erase(status, 1);
+                time_ += 300;
+                gate_.tick(time_);
+                gate_.from_controller(fmt::format("<{}|MPos:{}|FS:0,0>\r\n", state_, position_));
+            } else if (end != std::string::npos && most > 0) {
+                const std::string line = at_controller_.substr(0, end);
+                at_controller_.erase(0, end + 1);
+                if (line[0] != '$') run_.push_back(line);
+                --most;
+                gate_.from_controller(answer_to(line));
+            } else {
+                return;
+            }
+            check_all();
+        }
+    }
+    void begin() {
+        gate_.from_controller("Grbl 1.1h ['$' for help]\r\n");
+        time_ = 5000;
+        gate_.tick(time_);
+        play_controller();
+        at_sender_.clear();
+    }
+    void send(const std::string& text) {
+        gate_.from_sender(text);
+        play_controller();
+    }
+
+    test_support::ScopedFolder folder_;
+    app::LineCheck check_;
+    std::string to_sender_, at_controller_;
+    std::vector<std::string> at_sender_, run_;
+    std::deque<std::function<void()>> tasks_;
+    std::string state_ = "Idle", position_ = "0.000,0.000,40.000";
+    int64_t time_ = 0;
+    app::Gate gate_{links()};
+};
+
+TEST_F(GatedSender, GetsRepliesInOrder) {
+    begin();
+    send("G0X1\n(nothing)\nG0X70Z5\n\n$G\nG0X2\n");
+    ASSERT_EQ(at_sender_.size(), 8U);
+    EXPECT_THAT(at_sender_, ElementsAre("ok", "ok", HasSubstr("stops before G0X70Z5"), "error:9",
+                                        "ok", StartsWith("[GC:"), "ok", "error:9"));
+    EXPECT_THAT(run_, ElementsAre("G0X1"));
+}
+
+TEST_F(GatedSender, FillsTheControllersBufferAndNoMore) {
+    begin();
+    std::string text;
+    for (int i = 0; i < 40; ++i) text += fmt::format("G1X{}.25Y0\n", i);
+    gate_.from_sender(text);
+    check_all();
+    EXPECT_LE(at_controller_.size(), 127U);
+    EXPECT_GE(at_controller_.size(), 110U);
+    play_controller();
+    EXPECT_EQ(run_.size(), 40U);
+    EXPECT_EQ(at_sender_.size(), 40U);
+}
+
+TEST_F(GatedSender, SendsLinesOfOtherKindsAlone) {
+    begin();
+    gate_.from_sender("G1X1\nM5\nG1X2\n");
+    check_all();
+    EXPECT_EQ(at_controller_, "G1X1\n");
+    play_controller(1);
+    EXPECT_EQ(at_controller_, "M5\n");
+    play_controller(1);
+    EXPECT_EQ(at_controller_, "G1X2\n");
+}
+
+TEST_F(GatedSender, ReachesTheControllerAtOnceWithSomeBytes) {
+    begin();
+    gate_.from_sender("G1X1\nG1X");
+    gate_.from_sender("!");
+    EXPECT_EQ(at_controller_, "!"); // before the line, whose check has not begun
+    gate_.from_sender("\x8b"
+                      "2\n");
+    check_all();
+    EXPECT_EQ(at_controller_, "!G1X1\nG1X2\n");
+}
+
+/// Of lines that Grbl has taken in, only those that have left its planner count as cut.
+TEST_F(GatedSender, CountsLinesAsCutWhenTheyHaveLeftThePlanner) {
+    begin();
+    send("G0X-60\nZ-5\n");
+    std::string text;
+    for (int x = -59; x <= -30; ++x) text += fmt::format("G1X{}\n", x);
+    send(text);
+    ASSERT_EQ(run_.size(), 32U);
+    gate_.from_sender("\x18");
+    EXPECT_THAT(at_controller_, EndsWith("\x18"));
+    at_controller_.clear();
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n");
+    position_ = "-60.000,0.000,-5.000";
+    at_sender_.clear();
+    // 3 blocks in the planner and 8 behind it: the last of 32 lines that counts ends at X-41.
+    send("G0X-41\n");
+    EXPECT_THAT(at_sender_.back(), "ok");
+    send("G0X-40\n");
+    EXPECT_THAT(at_sender_.back(), "error:9");
+}
+
+TEST_F(GatedSender, LearnsNothingFromIdleDuringAReset) {
+    begin();
+    send("G0X-60\nZ-5\nG1X-40\n");
+    gate_.from_sender("\x18");
+    gate_.from_controller("ALARM:3\r\nok\r\nGrbl 1.1h ['$' for help]\r\n");
+    at_controller_.clear();
+    position_ = "-60.000,0.000,-5.000";
+    at_sender_.clear();
+    send("G0X-40\n");
+    EXPECT_THAT(at_sender_.back(), "error:9");
+    EXPECT_THAT(at_sender_[at_sender_.size() - 2], HasSubstr("stock"));
+}
+
+TEST_F(GatedSender, HoldsTheFeedWhenGrblRefusesALineAndHasOthers) {
+    begin();
+    gate_.from_sender("G1X1\nG1X2\nG1X3\n");
+    check_all();
+    at_controller_.clear();
+    gate_.from_controller("error:20\r\n");
+    EXPECT_EQ(at_controller_, "!");
+    at_controller_.clear();
+    gate_.from_controller("ok\r\nok\r\n");
+    EXPECT_THAT(at_sender_, ElementsAre(HasSubstr("had expected"), "error:20", "ok", "ok"));
+    send("G1X4\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    EXPECT_EQ(at_controller_, "");
+}
+
+TEST_F(GatedSender, IsLockedWhileTheControllerIsInAlarm) {
+    begin();
+    gate_.from_controller("ALARM:1\r\n");
+    state_ = "Alarm";
+    send("G0X1\n$J=X1F100\n$G\n");
+    EXPECT_THAT(at_sender_, Not(::testing::Contains(HasSubstr("MSG"))));
+    EXPECT_EQ(std::count(at_sender_.begin(), at_sender_.end(), "error:9"), 2);
+    EXPECT_TRUE(run_.empty());
+    state_ = "Idle";
+    send("$X\nG0X1\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+} // namespace
+} // namespace app_test
