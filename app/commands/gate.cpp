@@ -17,12 +17,11 @@ namespace {
 struct GateOptions {
     std::string setup;
     GatePorts ports;
-    std::optional<int> tool;
-    double tolerance = 0.01;
+    LineCheck::Options check;
 };
 
 core::Result<ExitCode> run(const GateOptions& options) {
-    FEELER_TRY(LineCheck check, LineCheck::open(options.setup, options.tool, options.tolerance));
+    FEELER_TRY(LineCheck check, LineCheck::open(options.setup, options.check));
     const auto note = [](const std::string& text) { print_note(text + "\n"); };
     FEELER_TRY(const GateCounts counts, run_gate(options.ports, check, is_interrupted, note));
     print_note(fmt::format("{} lines passed, {} refused\n", counts.passed, counts.refused));
@@ -63,15 +62,19 @@ void add_gate(CLI::App& cli, ExitCode& exit_code) {
                        "no --pty");
     add_path(command, "--pty", options->ports.terminal,
              "Where the sender finds a serial port of the gate: a link that the gate makes");
-    command.add_option("--tool", options->tool, "The tool in the spindle")
+    command.add_option("--tool", options->check.tool, "The tool in the spindle")
         ->check(CLI::Range(0, 99999));
     command
         .add_option(
-            "--tolerance", options->tolerance,
+            "--tolerance", options->check.tolerance,
             "How far work offset and tool length of the control may differ from the set-up, "
             "mm")
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
+    command.add_flag(
+        "--zero-is-set", options->check.zero_is_set,
+        "Take the control's work offset for the place of the work, without waiting for "
+        "$FEELER=ZERO");
     command.footer(gate_examples);
     command.callback([options, &exit_code] { exit_code = gate(*options); });
 }

@@ -13,7 +13,9 @@ namespace {
 
 constexpr int64_t rest = 250;            // ms without an answer until Idle counts as standing still
 constexpr int64_t asking_interval = 200; // ms between two requests for the status
+constexpr int64_t patience = 2000;       // ms
 constexpr size_t longest_line = 1024;    // bytes
+constexpr size_t usual_planner = 15;     // blocks
 constexpr size_t usual_buffer = 128;     // bytes, of Grbl on an Arduino Uno
 constexpr size_t largest_buffer = 1024;  // bytes that are used of a larger one
 constexpr size_t behind_planner = 8;     // blocks that have left the planner and are still made
@@ -38,9 +40,7 @@ void Gate::say(const std::string& text) {
 void Gate::sender_came() {
     sender_left();
     needs_asking_ = true;
-    // As a controller that was reset when its port was opened.
-    const bool stands = outstanding_.empty() && made_through_ >= answered_through_;
-    if (!banner_.empty() && stands) links_.to_sender(banner_ + "\r\n");
+    greets_ = true; // as a controller that was reset when its port was opened, when it stands still
 }
 
 void Gate::sender_left() {
@@ -64,6 +64,8 @@ void Gate::from_sender(std::string_view bytes) {
 
 /// Grbl takes these out of what it receives before anything else.
 void Gate::act_at_once(char byte) {
+    if (byte == cycle_start && is_derailed_)
+        return say("lines would run from the wrong place. Reset Grbl to go on");
     links_.to_controller(std::string_view(&byte, 1));
     if (byte == soft_reset) {
         awaits_reset_ = true;
@@ -71,13 +73,25 @@ void Gate::act_at_once(char byte) {
         drop_unsent();
         lines_.clear();
     }
-    if (byte == jog_cancel) {
-        drop_unsent();
-        if (has_jogged_) answered_through_ = made_through_;
-        // Grbl drops the jogs that it has, and these belong to the same movement.
-        for (const LinePointer& line : lines_)
-            if (line->stage == Stage::waiting && line->kind == GrblLine::jog) answer(line, "ok");
-    }
+    // A hold and an open door cancel jogs, too.
+    if (byte == jog_cancel || byte == feed_hold || byte == safety_door) cancel_jogs();
+}
+
+void Gate::cancel_jogs() {
+    const auto is_waiting = [](const LinePointer& line) {
+        return line->kind == GrblLine::jog && line->stage != Stage::answered;
+    };
+    if (!has_jogged_ && std::none_of(lines_.begin(), lines_.end(), is_waiting)) return;
+    drop_unsent();
+    answered_through_ = made_through_;
+    cancelled_through_ = last_number_;
+    // Grbl may still read one that is on its way, and then run it from another place.
+    cancels_again_ = std::any_of(outstanding_.begin(), outstanding_.end(), [](const Sent& sent) {
+        return sent.line && sent.line->kind == GrblLine::jog;
+    });
+    // Grbl drops the jogs that it has, and these belong to the same movement.
+    for (const LinePointer& line : lines_)
+        if (line->stage == Stage::waiting && line->kind == GrblLine::jog) answer(line, "ok");
 }
 
 void Gate::take_line() {
@@ -104,7 +118,7 @@ void Gate::flush_replies() {
 /// What was not sent to the controller yet will not be, or is checked anew.
 void Gate::drop_unsent() {
     ++epoch_;
-    is_judging_ = false;
+    is_judging_ = is_heard_ = false;
     if (asking_ == Asking::check) asking_ = Asking::nothing;
     needs_asking_ = true;
     for (const LinePointer& line : lines_)
@@ -136,18 +150,20 @@ bool Gate::handle_next() {
         answer(line, "ok");
         return true;
     case GrblLine::request:
-        if (line->text == "$C") return handle_check_mode(line);
+        if (line->text == "$C" && needs_asking_ && !is_checking_only_ && !is_alarmed_) {
+            ask_control(); // in check mode, Grbl answers no questions
+            return false;
+        }
         line->stage = Stage::ready;
         return true;
     case GrblLine::home:
     case GrblLine::unlock:
         needs_asking_ = true;
-        if (line->kind == GrblLine::unlock) is_latched_ = false;
+        if (line->kind == GrblLine::unlock && !is_derailed_) is_latched_ = false;
         line->stage = Stage::ready;
         return true;
     case GrblLine::other:
-        handle_own_command(line);
-        return true;
+        return handle_own_command(line);
     case GrblLine::code:
     case GrblLine::jog:
         return handle_motion(line);
@@ -155,24 +171,24 @@ bool Gate::handle_next() {
     return false;
 }
 
-/// Grbl answers no questions in this mode, so all must be known before.
-bool Gate::handle_check_mode(const LinePointer& line) {
-    if (needs_asking_ && !is_checking_only_ && !is_alarmed_) {
-        ask_control();
-        return false;
-    }
-    is_checking_only_ = true;
-    line->stage = Stage::ready;
-    return true;
-}
-
 bool Gate::handle_motion(const LinePointer& line) {
     if (is_latched_) {
-        answer(line, std::string(locked));
+        const bool is_news = now_ - last_refusal_ >= patience; // not with each line of a program
+        last_refusal_ = now_;
+        answer(line,
+               (is_news ? grbl_message("Feeler: " + latch_) + "\r\n" : "") + std::string(locked));
+        return true;
+    }
+    if (needs_asking_ && is_checking_only_) {
+        answer(line, grbl_message("Feeler: leave check mode ($C) before you go on.") + "\r\n"
+                         + std::string(locked));
         return true;
     }
     const bool is_jog = line->kind == GrblLine::jog;
-    needs_asking_ = needs_asking_ || (has_jogged_ && !is_jog);
+    // With a full planner, Grbl would run a waiting jog even after a cancel. Of G-code it does not
+    // know before all jogs have ended.
+    const size_t most_jogs = facts_.planner.value_or(usual_planner) / 2;
+    needs_asking_ = needs_asking_ || (is_jog ? jogs_ >= most_jogs : has_jogged_);
     const bool has_unsent = std::any_of(lines_.begin(), lines_.end(), [](const LinePointer& other) {
         return other->stage == Stage::ready;
     });
@@ -201,8 +217,7 @@ void Gate::take_verdict(const LinePointer& line, LineVerdict verdict) {
     if (verdict.answer.may_move) {
         line->verdict = std::move(verdict);
         line->stage = Stage::ready;
-        needs_asking_ =
-            needs_asking_ || line->verdict.stops_at_contact || line->verdict.changes_offsets;
+        needs_asking_ = needs_asking_ || line->verdict.asks_anew;
         has_jogged_ = has_jogged_ || line->kind == GrblLine::jog;
         return;
     }
@@ -221,57 +236,74 @@ void Gate::refuse(const LinePointer& line, const LineVerdict& verdict) {
     if (latches) text += fmt::format(" {}", how_to_go_on);
     links_.note("Feeler " + text);
     answer(line, grbl_message("Feeler " + text) + "\r\n" + error_reply(verdict.error));
-    is_latched_ = is_latched_ || latches;
+    if (!latches) return;
+    is_latched_ = true;
+    last_refusal_ = now_;
+    latch_ = fmt::format("{} was refused. {}", line->text, how_to_go_on);
 }
 
-void Gate::handle_own_command(const LinePointer& line) {
-    const std::string_view text = line->text;
-    if (!text.starts_with(own_command)) {
-        answer(line, grbl_message("Feeler: " + line->text
-                                  + " does not pass: it could change what is checked. Change "
-                                    "settings without the gate.")
-                         + "\r\nerror:3");
-        return;
-    }
-    const std::string_view what = text.substr(own_command.size());
-    const auto tell = [this](std::string said) { say(said); };
+/// What an own command of the gate says; empty if it is none.
+std::optional<OperatorWord> word_in(std::string_view text) {
+    using Kind = OperatorWord::Kind;
+    if (text == "$FEELER=SETUP") return OperatorWord{Kind::sets_up, {}};
+    if (text == "$FEELER=ZERO") return OperatorWord{Kind::zero_is_set, {}};
+    if (text == "$FEELER=NEW") return OperatorWord{Kind::new_workpiece, {}};
+    constexpr std::string_view change = "$FEELER=T";
     int tool = 0;
-    if (what.starts_with("=T")
-        && std::from_chars(what.data() + 2, what.data() + what.size(), tool).ptr
-               == what.data() + what.size()) {
-        line->stage = Stage::checking;
+    if (!text.starts_with(change)) return {};
+    const auto read = std::from_chars(text.data() + change.size(), text.data() + text.size(), tool);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || tool < 0) return {};
+    return OperatorWord{Kind::sets_up, tool};
+}
+
+/// Whether there may be more to do.
+bool Gate::handle_own_command(const LinePointer& line) {
+    const auto word = word_in(line->text);
+    if (line->text == own_command) {
+        say(fmt::format("{} lines passed, {} refused. {}", passed_, refused_,
+                        is_latched_     ? latch_
+                        : said_.empty() ? "Motions are checked."
+                                        : said_));
+        answer(line, "ok");
+        return true;
+    }
+    if (!word) {
+        const bool is_own = line->text.starts_with(own_command);
+        answer(line,
+               grbl_message(is_own ? "Feeler: its commands are $FEELER, $FEELER=SETUP, "
+                                     "$FEELER=T2 (and any tool), $FEELER=ZERO and $FEELER=NEW."
+                                   : "Feeler: " + line->text
+                                         + " does not pass. Change settings, and run files of "
+                                           "the controller, without the gate.")
+                   + "\r\nerror:3");
+        return true;
+    }
+    // The check hears it when the machine stands still, and then the control is asked.
+    if (!is_heard_) {
+        is_heard_ = true;
         needs_asking_ = true;
+        is_judging_ = true;
         const auto problem = std::make_shared<std::string>();
-        links_.run(
-            [problem, tool](LineCheck& check) {
-                if (auto done = check.change_tool(tool); !done) *problem = done.error().message;
-            },
-            [this, line, problem, tool, tell] {
-                if (line->stage != Stage::checking) return;
-                if (problem->empty()) tell(fmt::format("tool {} is in the spindle", tool));
-                answer(line, problem->empty()
-                                 ? "ok"
-                                 : grbl_message("Feeler: the set-up " + *problem) + "\r\nerror:3");
-                go_on();
-            });
-        return;
+        links_.run([problem, word = *word](LineCheck& check) { *problem = check.hear(word); },
+                   [this, line, problem, epoch = epoch_] {
+                       if (epoch != epoch_) return;
+                       is_judging_ = false;
+                       if (!problem->empty()) {
+                           is_heard_ = false;
+                           answer(line, grbl_message("Feeler: " + *problem) + "\r\nerror:3");
+                       }
+                       go_on();
+                   });
+        return false;
     }
-    if (what == "=NEW") {
-        needs_asking_ = true;
-        links_.run([](LineCheck& check) { check.renew_stock(); }, [] {});
-        tell("the stock counts as uncut");
-        answer(line, "ok");
-        return;
+    if (needs_asking_) {
+        ask_control();
+        return false;
     }
-    if (what.empty()) {
-        tell(fmt::format("{} lines passed, {} refused{}", passed_, refused_,
-                         is_latched_ ? fmt::format(". {}", how_to_go_on) : ""));
-        answer(line, "ok");
-        return;
-    }
-    answer(line, grbl_message("Feeler: its commands are $FEELER, $FEELER=T2 (tool 2 is in the "
-                              "spindle) and $FEELER=NEW (a new workpiece)")
-                     + "\r\nerror:3");
+    is_heard_ = false;
+    if (said_.empty()) say("the zero is set, and motions are checked");
+    answer(line, "ok");
+    return true;
 }
 
 /// Sends what may be sent, in order, as far as the controller has room.
@@ -295,11 +327,13 @@ void Gate::send_ready() {
 
 /// Whether a line may be sent while others are not answered.
 bool Gate::is_plain(const Line& line) {
-    return line.kind == GrblLine::request || (line.kind == GrblLine::code && line.verdict.is_plain);
+    return (line.kind == GrblLine::request && line.text != "$C")
+           || (line.kind == GrblLine::code && line.verdict.is_plain);
 }
 
 void Gate::send_line(const LinePointer& line) {
     line->stage = Stage::sent;
+    last_sent_ = now_;
     outstanding_.push_back({line, line->text.size() + 1});
     links_.to_controller(line->text + "\n");
 }
@@ -336,6 +370,7 @@ void Gate::take_reply(const std::string& text) {
 
 void Gate::take_answer(const std::string& text) {
     last_answer_ = now_;
+    said_no_answer_ = false;
     if (outstanding_.empty()) {
         links_.note("Feeler: the controller answers where nothing was asked: " + text);
         needs_asking_ = true;
@@ -348,17 +383,20 @@ void Gate::take_answer(const std::string& text) {
         return ask_next_fact();
     }
     const LinePointer& line = sent.line;
+    if (line->kind == GrblLine::jog && std::exchange(cancels_again_, false))
+        links_.to_controller(std::string_view(&jog_cancel, 1));
     const bool was_checked = line->kind == GrblLine::code || line->kind == GrblLine::jog;
     answer(line, text);
     if (text == "ok") {
         if (line->kind == GrblLine::unlock || line->kind == GrblLine::home) is_alarmed_ = false;
+        // Grbl resets itself when it leaves check mode.
+        if (line->text == "$C") (is_checking_only_ ? awaits_reset_ : is_checking_only_) = true;
         if (was_checked) {
             ++passed_;
             note_made(line);
         }
         return;
     }
-    if (line->text == "$C") is_checking_only_ = false;
     if (!was_checked) return;
     // The lines after it were checked as if this one had been run.
     drop_unsent();
@@ -366,21 +404,30 @@ void Gate::take_answer(const std::string& text) {
     const bool has_sent_more =
         std::any_of(outstanding_.begin(), outstanding_.end(),
                     [](const Sent& s) { return s.line && s.line->kind == GrblLine::code; });
-    is_latched_ = true;
-    if (has_sent_more) links_.to_controller(std::string_view(&feed_hold, 1));
-    say(fmt::format("Grbl does not run {} ({}), and the gate had expected that it does. {}{}",
-                    line->text, text, has_sent_more ? "The feed is held. " : "", how_to_go_on));
+    if (!has_sent_more) return;
+    is_latched_ = is_derailed_ = true;
+    latch_ = fmt::format("Grbl refused {}. Reset Grbl to go on.", line->text);
+    links_.to_controller(std::string_view(&feed_hold, 1));
+    say(fmt::format(
+        "Grbl refused {} ({}), and lines after it are on their way. The feed is held. Reset Grbl "
+        "to go on.",
+        line->text, text));
 }
 
 /// A line was taken in. Lines before it that have left the planner have been made.
 void Gate::note_made(const LinePointer& line) {
-    if (is_checking_only_ || is_alarmed_ || awaits_reset_) return;
+    if (is_checking_only_ || is_alarmed_ || is_derailed_ || awaits_reset_) return;
     // Grbl takes jogs when all other motions have ended.
-    if (line->kind == GrblLine::jog) made_through_ = std::max(made_through_, last_code_);
+    if (line->kind == GrblLine::jog) {
+        made_through_ = std::max(made_through_, last_code_);
+        if (line->number <= cancelled_through_) return;
+        ++jogs_;
+    }
     answered_through_ = line->number;
     if (line->kind == GrblLine::code) last_code_ = line->number;
-    if (line->verdict.stops_at_contact || line->text.starts_with("G4P")) {
-        made_through_ = line->number; // Grbl waits until all motions have ended
+    // Grbl waits until all motions before have ended.
+    if (line->verdict.stops_at_contact || (line->text.starts_with("G4P") && !line->verdict.moves)) {
+        made_through_ = line->number;
         in_planner_.clear();
         return;
     }
@@ -396,7 +443,15 @@ void Gate::take_status(const GrblStatus& status) {
     if (is_idle && stands && !is_checking_only_) {
         made_through_ = std::max(made_through_, answered_through_);
         in_planner_.clear();
+        jogs_ = 0;
     }
+    if (status.mpos && !may_be_lost_) was_at_ = *status.mpos;
+    if (is_idle && stands && std::exchange(greets_, false) && !banner_.empty())
+        links_.to_sender(banner_ + "\r\n");
+    // It stands, and has not answered.
+    if (is_idle && !outstanding_.empty() && now_ - last_sent_ >= patience
+        && now_ - last_answer_ >= patience && !std::exchange(said_no_answer_, true))
+        say("the controller does not answer. Reset Grbl to go on.");
     if (asking_ != Asking::status || !stands) return;
     if (status.state == "Alarm" || status.state == "Sleep") {
         asking_ = Asking::nothing;
@@ -432,7 +487,13 @@ void Gate::take_reset() {
     from_sender_.clear();
     answered_through_ = made_through_; // motions may have been cut off
     asking_ = Asking::nothing;
-    awaits_reset_ = is_latched_ = is_alarmed_ = is_checking_only_ = has_jogged_ = false;
+    // A restart that nobody has asked for: the machine has not moved, and says that it is at zero.
+    may_be_lost_ = may_be_lost_ || (!awaits_reset_ && knows_settings_);
+    was_dry_ = is_checking_only_;
+    jogs_ = 0;
+    cancels_again_ = false;
+    awaits_reset_ = is_latched_ = is_derailed_ = is_alarmed_ = is_checking_only_ = has_jogged_ =
+        false;
     knows_settings_ = false;
     was_reset_ = true;
     said_.clear();
@@ -460,8 +521,10 @@ void Gate::ask_control() {
 void Gate::lock_waiting() {
     for (const LinePointer& line : lines_)
         if (line->stage == Stage::waiting
-            && (line->kind == GrblLine::code || line->kind == GrblLine::jog))
+            && (line->kind == GrblLine::code || line->kind == GrblLine::jog
+                || line->kind == GrblLine::other))
             answer(line, std::string(locked));
+    is_heard_ = false;
 }
 
 void Gate::ask_next_fact() {
@@ -483,6 +546,9 @@ void Gate::take_facts() {
     }
     facts_ = asked_;
     facts_.is_reset = std::exchange(was_reset_, false);
+    facts_.is_dry = std::exchange(was_dry_, false);
+    facts_.is_lost = std::exchange(may_be_lost_, false) && !position_is_of_work_
+                     && position_ == core::Vec3(0.0) && was_at_ != position_;
     knows_settings_ = true;
     core::Vec3 position = facts_.scaled(position_);
     if (position_is_of_work_)
@@ -521,12 +587,13 @@ void Gate::follow() {
 
 void Gate::tick(int64_t now) {
     now_ = now;
-    if (asking_ == Asking::status && now_ - asked_status_ >= asking_interval) {
+    const bool awaits_status = asking_ == Asking::status || greets_
+                               || (!outstanding_.empty() && now_ - last_sent_ >= patience);
+    if (awaits_status && now_ - asked_status_ >= asking_interval) {
         asked_status_ = now_;
         links_.to_controller(std::string_view(&status_request, 1));
     }
     // Says early what is wrong.
-    constexpr int64_t patience = 1000;
     if (!knows_settings_ && now_ - asked_status_ >= patience) ask_control();
     go_on();
 }

@@ -60,6 +60,7 @@ private:
     enum class Asking : uint8_t { nothing, status, facts, check };
 
     void act_at_once(char byte);
+    void cancel_jogs();
     void take_line();
     void take_reply(const std::string& text);
     void take_answer(const std::string& text);
@@ -70,8 +71,7 @@ private:
     void go_on();
     bool handle_next();
     bool handle_motion(const LinePointer& line);
-    bool handle_check_mode(const LinePointer& line);
-    void handle_own_command(const LinePointer& line);
+    bool handle_own_command(const LinePointer& line);
     void answer(const LinePointer& line, std::string reply);
     void refuse(const LinePointer& line, const LineVerdict& verdict);
     void take_verdict(const LinePointer& line, LineVerdict verdict);
@@ -96,11 +96,21 @@ private:
     bool awaits_reset_ = false; // the sender has reset the controller
     bool is_latched_ = false;   // a line was refused
     bool is_alarmed_ = false;   // Grbl refuses lines by itself
+    bool is_derailed_ = false;  // lines after one that Grbl refused are on their way
 
     // What is known of the control.
     bool needs_asking_ = true; // before the next line that may move
     bool has_jogged_ = false;  // Grbl takes no G-code until the jogs have ended
     bool knows_settings_ = false, was_reset_ = false;
+    bool may_be_lost_ = false;            // where the machine is, by a restart
+    core::Vec3 was_at_ = core::Vec3(0.0); // as reported, before it
+    bool was_dry_ = false;                // it was in check mode
+    bool is_heard_ = false;               // a word of the operator, and not answered yet
+    bool cancels_again_ = false;          // when a jog that is on its way is answered
+    bool greets_ = false;                 // a new sender
+    bool said_no_answer_ = false;
+    std::string latch_; // why nothing passes
+    size_t jogs_ = 0;   // that may still be in the planner
     Asking asking_ = Asking::nothing;
     size_t next_fact_ = 0;
     bool was_refused_ = false; // one of these requests
@@ -115,9 +125,9 @@ private:
     // Numbers of lines: the last one; of those that were made, are followed in the check, were
     // taken in; the last that is no jog.
     uint64_t last_number_ = 0, made_through_ = 0, followed_ = 0, answered_through_ = 0,
-             last_code_ = 0;
-    std::deque<uint64_t> in_planner_;                      // lines that may still be in the planner
-    int64_t now_ = 0, last_answer_ = 0, asked_status_ = 0; // ms
+             last_code_ = 0, cancelled_through_ = 0; // of jogs
+    std::deque<uint64_t> in_planner_;                // lines that may still be in the planner
+    int64_t now_ = 0, last_answer_ = 0, last_sent_ = 0, asked_status_ = 0, last_refusal_ = 0; // ms
     uint64_t passed_ = 0, refused_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,9 +14,11 @@
 #include <fmt/format.h>
 
 #ifndef _WIN32
+#include <cerrno>
 #include <cstdlib>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 #endif
@@ -120,7 +123,9 @@ public:
 private:
     Gate::Links links();
     void accept();
-    void take_sender(const std::shared_ptr<Stream>& sender);
+    template <typename Port>
+    void take_sender(const std::shared_ptr<StreamOf<Port>>& sender);
+    void look_at_terminal();
     void tick();
     void close_terminal();
 
@@ -131,9 +136,9 @@ private:
     asio::thread_pool checking_{1};
     asio::steady_timer timer_{io_};
     std::optional<asio::ip::tcp::acceptor> acceptor_;
-    std::shared_ptr<Stream> controller_, sender_, terminal_;
-    int terminal_end_ = -1; // kept open, so that a sender may come and go
-    std::string link_, ended_;
+    std::shared_ptr<Stream> controller_, sender_;
+    int terminal_ = -1; // our end
+    std::string link_, failed_;
     Gate gate_;
 };
 
@@ -148,8 +153,15 @@ Gate::Links GateServer::links() {
     links.note = note_;
     links.run = [this](std::function<void(LineCheck&)> work, std::function<void()> done) {
         asio::post(checking_, [this, work = std::move(work), done = std::move(done)]() mutable {
-            work(check_);
-            asio::post(io_, std::move(done));
+            try {
+                work(check_);
+                asio::post(io_, std::move(done));
+            } catch (const std::exception& error) { // no memory: nothing passes any more
+                asio::post(io_, [this, why = std::string(error.what())] {
+                    failed_ = "a line cannot be checked: " + why;
+                    io_.stop();
+                });
+            }
         });
     };
     return links;
@@ -162,7 +174,7 @@ core::Result<void> GateServer::open_controller(const GatePorts& ports) {
         controller_ = stream;
         controller_->on_bytes = [this](std::string_view bytes) { gate_.from_controller(bytes); };
         controller_->on_end = [this](const std::string& why) {
-            ended_ = why;
+            failed_ = "the controller is gone: " + why;
             io_.stop();
         };
         stream->start();
@@ -215,35 +227,30 @@ core::Result<void> GateServer::listen(const std::string& where) {
 void GateServer::accept() {
     acceptor_->async_accept([this](std::error_code error, asio::ip::tcp::socket socket) {
         if (error) return;
-        if (sender_ && sender_ != terminal_) {
-            std::error_code ignored;
-            asio::write(socket,
-                        asio::buffer(std::string("[MSG:Feeler: a sender is connected]\r\n")),
-                        ignored);
+        std::error_code ignored;
+        if (sender_) {
+            const std::string text = "[MSG:Feeler: a sender is connected]\r\n";
+            asio::write(socket, asio::buffer(text), ignored);
         } else {
-            std::error_code ignored;
             socket.set_option(asio::ip::tcp::no_delay(true), ignored);
-            const auto stream = stream_of(std::move(socket));
-            take_sender(stream);
-            stream->start();
+            take_sender(stream_of(std::move(socket)));
         }
         accept();
     });
 }
 
-void GateServer::take_sender(const std::shared_ptr<Stream>& sender) {
+template <typename Port>
+void GateServer::take_sender(const std::shared_ptr<StreamOf<Port>>& sender) {
     sender_ = sender;
-    sender->on_bytes = [this, sender = std::weak_ptr(sender)](std::string_view bytes) {
-        if (sender.lock() == sender_) gate_.from_sender(bytes);
-    };
-    sender->on_end = [this, sender = std::weak_ptr(sender)](const std::string&) {
-        if (sender.lock() != sender_) return;
+    sender->on_bytes = [this](std::string_view bytes) { gate_.from_sender(bytes); };
+    sender->on_end = [this](const std::string&) {
         note_("the sender is gone");
-        sender_ = terminal_;
+        sender_.reset();
         gate_.sender_left();
     };
     note_("a sender is connected");
     gate_.sender_came();
+    sender->start();
 }
 
 #ifdef _WIN32
@@ -252,43 +259,51 @@ core::Result<void> GateServer::open_terminal(const std::string&) {
                       "Windows has no pseudo-terminals: use --listen, or a pair of virtual ports");
 }
 
+void GateServer::look_at_terminal() {}
 void GateServer::close_terminal() {}
 #else
 core::Result<void> GateServer::open_terminal(const std::string& link) {
     const auto failure = [] { return std::error_code(errno, std::system_category()); };
-    const int end = ::posix_openpt(O_RDWR | O_NOCTTY);
-    if (end < 0) return not_open(link, failure());
-    asio::posix::stream_descriptor descriptor(io_, end);
-    const char* const name = ::grantpt(end) == 0 && ::unlockpt(end) == 0 ? ::ptsname(end) : nullptr;
-    terminal_end_ = name ? ::open(name, O_RDWR | O_NOCTTY) : -1;
-    termios settings{};
-    if (terminal_end_ < 0 || ::tcgetattr(terminal_end_, &settings) != 0)
-        return not_open(link, failure());
-    ::cfmakeraw(&settings);
-    if (::tcsetattr(terminal_end_, TCSANOW, &settings) != 0) return not_open(link, failure());
+    terminal_ = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal_ < 0) return not_open(link, failure());
+    const bool is_ready = ::grantpt(terminal_) == 0 && ::unlockpt(terminal_) == 0;
+    const char* const name = is_ready ? ::ptsname(terminal_) : nullptr;
+    // Only after it was opened once does the system say whether somebody has it open.
+    const int other_end = name ? ::open(name, O_RDWR | O_NOCTTY) : -1;
+    if (other_end < 0) return not_open(link, failure());
+    ::close(other_end);
     std::error_code error;
     if (std::filesystem::is_symlink(link)) std::filesystem::remove(link, error);
     std::filesystem::create_symlink(name, link, error);
     if (error) return not_open(link, error);
     link_ = link;
-    const auto stream = stream_of(std::move(descriptor));
-    terminal_ = stream;
     note_(fmt::format("the sender opens {} ({})", link, name));
-    take_sender(terminal_);
-    stream->start();
     return {};
+}
+
+/// Takes a sender that has opened the terminal.
+void GateServer::look_at_terminal() {
+    pollfd state{terminal_, POLLIN, 0};
+    if (terminal_ < 0 || sender_ || ::poll(&state, 1, 0) < 0) return;
+    termios settings{};
+    if ((state.revents & POLLHUP) != 0 || ::tcgetattr(terminal_, &settings) != 0) return;
+    ::cfmakeraw(&settings); // otherwise what the gate writes comes back
+    ::tcsetattr(terminal_, TCSANOW, &settings);
+    asio::posix::stream_descriptor port(io_, ::dup(terminal_));
+    take_sender(stream_of(std::move(port)));
 }
 
 void GateServer::close_terminal() {
     std::error_code ignored;
     if (!link_.empty()) std::filesystem::remove(link_, ignored);
-    if (terminal_end_ >= 0) ::close(terminal_end_);
+    if (terminal_ >= 0) ::close(terminal_);
 }
 #endif
 
 void GateServer::tick() {
     constexpr auto interval = milliseconds(50);
     if (is_stopped_()) return io_.stop();
+    look_at_terminal();
     gate_.tick(core::platform::steady_milliseconds());
     timer_.expires_after(interval); // clock: polls
     timer_.async_wait([this](std::error_code error) {
@@ -301,8 +316,7 @@ core::Result<GateCounts> GateServer::run() {
     io_.run();
     checking_.stop();
     checking_.join();
-    if (!ended_.empty())
-        return core::fail(core::ErrorCode::io, "the controller is gone: " + ended_);
+    if (!failed_.empty()) return core::fail(core::ErrorCode::io, failed_);
     return GateCounts{gate_.passed(), gate_.refused()};
 }
 

@@ -41,8 +41,11 @@ std::optional<core::Vec3> vector_of(std::string_view text) {
     return value;
 }
 
-bool has_axis_word(std::string_view line) {
-    return line.find_first_of("XYZABCUVW") != std::string_view::npos;
+/// Whether a start-up line may move the machine: G28 and G30 do so without an axis, too.
+bool may_move(std::string_view line) {
+    return line.find_first_of("XYZABCUVW") != std::string_view::npos
+           || line.find("G28") != std::string_view::npos
+           || line.find("G30") != std::string_view::npos;
 }
 
 } // namespace
@@ -142,7 +145,7 @@ void GrblFacts::take(std::string_view line) {
         planner = count(1);
         buffer = count(2);
     }
-    if (line.starts_with("$N") && has_axis_word(line.substr(2))) stored_line = line;
+    if (line.starts_with("$N") && may_move(line.substr(2))) stored_line = line;
     if (line.starts_with("$") && line.find('=') != std::string_view::npos) {
         const size_t equals = line.find('=');
         const auto value = number_of(line.substr(equals + 1));

@@ -34,8 +34,8 @@ bool acts_at_once(char byte);
 /// Whether a byte is neither a part of a line nor known; Grbl drops it.
 bool is_dropped(char byte);
 
-constexpr char soft_reset = 0x18, status_request = '?', feed_hold = '!';
-constexpr char jog_cancel = static_cast<char>(0x85);
+constexpr char soft_reset = 0x18, status_request = '?', feed_hold = '!', cycle_start = '~';
+constexpr char safety_door = static_cast<char>(0x84), jog_cancel = static_cast<char>(0x85);
 
 /// A status report: <Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:...>
 struct GrblStatus {
@@ -57,6 +57,8 @@ struct GrblFacts {
     double arc_tolerance = 0.002;          // mm
     bool reports_inches = false;           // $13
     bool is_reset = false;                 // it was reset since it was asked before
+    bool is_dry = false;                   // what it did since then was in check mode
+    bool is_lost = false;                  // nobody knows where the machine is
     unsigned seen = 0;                     // one bit for each of G54 to G59, G92, G28, G30, TLO
     bool has_offsets() const { return seen == 0x3ff; }
     core::Vec3 scaled(core::Vec3 reported) const; // to mm

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -25,7 +27,9 @@ namespace app {
 namespace {
 
 constexpr std::string_view who = "the gate";
-constexpr size_t offset_count = 6; // G54 to G59
+constexpr size_t offset_count = 6;        // G54 to G59
+constexpr double most_arc_error = 0.02;   // mm
+constexpr double least_difference = 5e-4; // of numbers, mm or inches
 
 core::Result<SetupFile> read_text(const std::string& text, const std::string& path) {
     ProgramSettings settings;
@@ -58,18 +62,81 @@ bool is_among(double number, std::initializer_list<double> numbers) {
     return std::find(numbers.begin(), numbers.end(), number) != numbers.end();
 }
 
-/// Whether a line has only motions and modes whose effect is over when Grbl has taken it in.
-bool is_plain(const std::string& text) {
-    for (size_t i = 0; i < text.size(); ++i) {
-        const char letter = text[i];
-        if (std::isalpha(static_cast<unsigned char>(letter)) == 0) continue;
-        if (letter != 'G') {
-            if (std::string_view("NXYZIJKRFS").find(letter) == std::string_view::npos) return false;
+/// A letter with its number, as Grbl reads it: of more than eight digits, it drops the others.
+struct GrblWord {
+    char letter = 0;
+    double value = 0.0, exact = 0.0;
+};
+
+/// A number of digits with or without a sign and a point.
+double number_in(std::string_view text) {
+    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+    double value = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
+/// The words of a line; empty if it has another form.
+std::optional<std::vector<GrblWord>> words_of(const std::string& text) {
+    constexpr int most_digits = 8;
+    std::vector<GrblWord> words;
+    for (size_t i = 0; i < text.size();) {
+        GrblWord word;
+        word.letter = text[i++];
+        if (std::isalpha(static_cast<unsigned char>(word.letter)) == 0) return {};
+        const size_t begin = i;
+        if (i < text.size() && (text[i] == '-' || text[i] == '+')) ++i;
+        std::string kept = text.substr(begin, i - begin);
+        int digits = 0;
+        bool has_point = false;
+        for (; i < text.size(); ++i) {
+            if (text[i] == '.' && !std::exchange(has_point, true)) {
+                kept += '.';
+            } else if (std::isdigit(static_cast<unsigned char>(text[i])) != 0) {
+                if (++digits <= most_digits)
+                    kept += text[i];
+                else if (!has_point)
+                    kept += '0';
+            } else {
+                break;
+            }
+        }
+        if (digits == 0) return {};
+        word.value = number_in(kept);
+        word.exact = number_in(text.substr(begin, i - begin));
+        words.push_back(word);
+    }
+    return words;
+}
+
+/// Modal groups of the codes that plain lines may have.
+std::optional<int> plain_group(double code) {
+    if (is_among(code, {0, 1})) return 1;
+    if (is_among(code, {17, 18, 19})) return 2;
+    if (is_among(code, {90, 91})) return 3;
+    if (is_among(code, {20, 21})) return 6;
+    if (is_among(code, {54, 55, 56, 57, 58, 59})) return 12;
+    return {};
+}
+
+/// Whether a line has only straight motions and modes whose effect is over when Grbl has taken it
+/// in, and nothing for which Grbl may refuse it.
+bool is_plain(const std::vector<GrblWord>& words) {
+    std::string seen;
+    std::set<int> groups;
+    for (const GrblWord& word : words) {
+        if (word.letter == 'G') {
+            const auto group = plain_group(word.value);
+            if (!group || !groups.insert(*group).second) return false;
             continue;
         }
-        const double code = std::strtod(text.c_str() + i + 1, nullptr);
-        if (!is_among(code, {0, 1, 2, 3, 17, 18, 19, 20, 21, 54, 55, 56, 57, 58, 59, 90, 91, 94}))
-            return false;
+        constexpr double most_lines = 1e7;
+        if (std::string_view("NXYZFS").find(word.letter) == std::string_view::npos) return false;
+        if (seen.find(word.letter) != std::string::npos) return false;
+        seen += word.letter;
+        if (word.letter == 'F' && !(word.value > 0.0)) return false;
+        if (word.letter == 'S' && word.value < 0.0) return false;
+        if (word.letter == 'N' && !(word.value >= 0.0 && word.value < most_lines)) return false;
     }
     return true;
 }
@@ -82,11 +149,10 @@ bool sets_offsets(const std::string& text) {
 }
 
 /// An M code that Grbl refuses and that a check accepts, because many senders act on it.
-std::optional<int> refused_machine_code(const std::string& text) {
-    for (size_t at = text.find('M'); at != std::string::npos; at = text.find('M', at + 1)) {
-        const double code = std::strtod(text.c_str() + at + 1, nullptr);
-        if (!is_among(code, {0, 1, 2, 3, 4, 5, 7, 8, 9, 30})) return static_cast<int>(code);
-    }
+std::optional<double> refused_machine_code(const std::vector<GrblWord>& words) {
+    for (const GrblWord& word : words)
+        if (word.letter == 'M' && !is_among(word.value, {0, 1, 2, 3, 4, 5, 7, 8, 9, 30}))
+            return word.value;
     return {};
 }
 
@@ -112,9 +178,21 @@ bool is_planned(const core::Event& event, const core::Vec3& step) {
     const core::Motion* const motion = motion_in(event);
     for (size_t i = 0; motion && i < 3; ++i) {
         const double least = step[static_cast<int>(i)];
-        if (least > 0.0 && std::abs(*motion->to[i] - *motion->from[i]) >= least) return true;
+        // A little more, since Grbl rounds its numbers.
+        if (least > 0.0 && std::abs(*motion->to[i] - *motion->from[i]) >= 1.1 * least) return true;
     }
     return false;
+}
+
+bool has_arc(const std::vector<core::Event>& events) {
+    return std::any_of(events.begin(), events.end(), [](const core::Event& event) {
+        return motion_in(event) && motion_in(event)->arc;
+    });
+}
+
+bool is_straight_up(const core::Motion& motion) {
+    return !motion.arc && motion.from[0] == motion.to[0] && motion.from[1] == motion.to[1]
+           && *motion.to[2] >= *motion.from[2];
 }
 
 void lower_by(core::Event& event, double z) {
@@ -129,17 +207,18 @@ std::string number(double value) { return fmt::format("{:.3f}", value); }
 
 } // namespace
 
-core::Result<LineCheck> LineCheck::open(const std::string& setup, std::optional<int> tool,
-                                        double tolerance) {
+core::Result<LineCheck> LineCheck::open(const std::string& setup, const Options& options) {
     LineCheck check;
     check.path_ = setup;
-    check.tolerance_ = tolerance;
+    check.tolerance_ = options.tolerance;
     FEELER_TRY(SetupFile file, read_setup(setup, {})); // says what is wrong with the file
     std::ifstream in(setup, std::ios::binary);
     std::ostringstream text;
     text << in.rdbuf();
     check.text_ = text.str();
     check.takes_offsets_ = file.infers_frame;
+    check.is_set_up_ = !check.takes_offsets_;
+    if (options.zero_is_set) check.word_ = OperatorWord{OperatorWord::Kind::zero_is_set, {}};
     if (file.dialect && *file.dialect != gcode::DialectId::grbl)
         return core::fail_file(setup, fmt::format("the gate is for Grbl, and the set-up is for {}",
                                                   gcode::dialect(*file.dialect).name));
@@ -152,8 +231,8 @@ core::Result<LineCheck> LineCheck::open(const std::string& setup, std::optional<
     if (file.setup.machine.has_rotary())
         return core::fail_file(setup, "Grbl has no rotary axes, and the set-up's machine has");
     const auto& tools = file.setup.tools;
-    if (tool)
-        check.tool_ = core::ToolNumber{*tool};
+    if (options.tool)
+        check.tool_ = core::ToolNumber{*options.tool};
     else if (file.setup.tool_at_start)
         check.tool_ = file.setup.tool_at_start;
     else if (tools.size() == 1)
@@ -164,75 +243,76 @@ core::Result<LineCheck> LineCheck::open(const std::string& setup, std::optional<
     if (!tools.contains(*check.tool_))
         return core::fail_file(
             setup, fmt::format("does not describe tool {}", core::value_of(*check.tool_)));
+    check.environment_ = file.environment;
+    check.environment_.dialect = gcode::DialectId::grbl;
+    if (auto notes = apply(file.control, check.environment_, file.setup.machine); !notes)
+        return tl::unexpected(core::in_file(notes.error(), setup));
+    file.setup.machine.rapid = core::RapidStyle::straight;
     check.file_ = std::move(file);
     return check;
 }
 
-/// Reads the set-up with the control's offsets, if it takes them.
-core::Result<void> LineCheck::place(const GrblFacts& facts, const core::Vec3& position) {
-    problem_.clear();
-    if (!facts.active()) {
-        problem_ = "The control does not say which work offset it uses.";
-        return {};
-    }
-    if (!facts.stored_line.empty()) {
-        problem_ = fmt::format("Grbl runs the stored line {} at each reset, and nobody checks it: "
-                               "clear it ($N0= and $N1=) without the gate.",
-                               facts.stored_line);
-        return {};
-    }
-    bool is_elsewhere = !judge_;
-    if (judge_ && takes_offsets_) {
-        const gcode::AxisValues known = file_->environment.work_offset(*facts.active());
-        const core::Vec3 zero = facts.zero();
-        const auto differs = [&](int axis) {
-            const double shift = axis == 2 ? shift_ : 0.0;
-            return std::abs(zero[axis] - known[static_cast<size_t>(axis)] - shift) > tolerance_;
-        };
-        const bool is_beside = differs(0) || differs(1);
-        const bool may_be_tool = cuts_before_tool_ && *cuts_before_tool_ == cuts();
-        if (!is_beside && differs(2) && may_be_tool) {
-            // The tip of the new tool was touched off: the bodies stay where they are.
-            shift_ = zero.z - known[2];
-        } else if (is_beside || differs(2)) {
-            is_elsewhere = !has_cut_;
-        }
-    }
-    if (is_elsewhere && takes_offsets_) {
+std::string LineCheck::hear(const OperatorWord& word) {
+    if (word.tool && !file_->setup.tools.contains(core::ToolNumber{*word.tool}))
+        return fmt::format("The set-up does not describe tool {}.", *word.tool);
+    word_ = word;
+    return {};
+}
+
+/// Builds the model at the place where the control has its zero, with uncut stock.
+core::Result<void> LineCheck::build(const GrblFacts& facts) {
+    if (takes_offsets_) {
         FEELER_TRY(const std::string text, with_offsets(text_, facts, file_->length_unit));
         FEELER_TRY(SetupFile file, read_text(text, path_));
+        file.setup.machine.rapid = core::RapidStyle::straight;
         file_ = std::move(file);
-        shift_ = 0.0;
     }
+    shift_ = 0.0;
+    judge_.emplace(file_->setup);
+    FEELER_TRY(core::SimulatorState state, core::start_of_run(judge_->setup(), {}));
+    state.is_assumed = {};
+    state.tool_known = true;
+    made_ = std::move(state);
+    has_cut_ = false;
+    return {};
+}
+
+/// Lets the bodies stay where they are although Z of the control has moved by this, since another
+/// tool was touched off. False if that is not possible.
+bool LineCheck::use_shift(double z) {
     core::Setup setup = file_->setup;
-    core::MachineAxis& z = setup.machine.axes[2];
-    if (z.min) *z.min -= shift_;
-    if (z.max) *z.max -= shift_;
-    setup.machine.rapid = core::RapidStyle::straight;
     const auto stands = [&](const core::MachineBody& body) {
         return body.link != setup.machine.spindle;
     };
-    if (shift_ != 0.0
-        && std::any_of(setup.machine.bodies.begin(), setup.machine.bodies.end(), stands))
-        problem_ = "The tool was changed and touched off, so where the machine's own bodies are is "
-                   "not known any more. Restart the gate.";
-    gcode::Environment environment = file_->environment;
-    environment.dialect = gcode::DialectId::grbl;
-    if (auto notes = apply(file_->control, environment, setup.machine); !notes)
-        return tl::unexpected(std::move(notes).error());
-    environment_ = std::move(environment);
+    const auto& bodies = setup.machine.bodies;
+    if (std::any_of(bodies.begin(), bodies.end(), stands)) return false;
+    shift_ = z;
+    core::MachineAxis& axis = setup.machine.axes[2];
+    if (axis.min) *axis.min -= shift_;
+    if (axis.max) *axis.max -= shift_;
     judge_.emplace(setup);
-    if (is_elsewhere) {
-        made_.reset();
-        has_cut_ = false;
-    }
-    if (made_) return {};
-    FEELER_TRY(core::SimulatorState state,
-               core::start_of_run(judge_->setup(), position_at(position)));
-    state.is_assumed = {};
-    state.tool = tool_;
-    state.tool_known = true;
-    made_ = std::move(state);
+    return true;
+}
+
+/// The operator says that the work lies at the zero of the control.
+core::Result<void> LineCheck::take_zero(const GrblFacts& facts) {
+    const bool is_new = word_->kind == OperatorWord::Kind::new_workpiece;
+    is_set_up_ = true;
+    if (!made_ || is_new) return build(facts);
+    if (!takes_offsets_) return {}; // compared with the set-up's
+    const gcode::AxisValues known = file_->environment.work_offset(*facts.active());
+    core::Vec3 by = facts.zero();
+    for (int axis = 0; axis < 3; ++axis) by[axis] -= known[static_cast<size_t>(axis)];
+    const bool is_beside = std::abs(by.x) > tolerance_ || std::abs(by.y) > tolerance_;
+    const bool is_above = std::abs(by.z - shift_) > tolerance_;
+    if (!is_beside && !is_above) return {};
+    if (!has_cut_) return build(facts);
+    if (!is_beside && tool_was_changed_ && use_shift(by.z)) return {};
+    is_set_up_ = false;
+    problem_ =
+        fmt::format("The zero has moved by X{} Y{} Z{} mm since the stock was cut. If there is a "
+                    "new workpiece, send $FEELER=NEW.",
+                    number(by.x), number(by.y), number(by.z - shift_));
     return {};
 }
 
@@ -246,18 +326,21 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
     environment_.start = position_at(position);
     environment_.startup_code.clear();
     std::optional<gcode::MotionCode> motion;
-    core::SpindleChange spindle;
+    core::SpindleChange& spindle = spindle_ = {};
     bool has_feed = false;
     std::istringstream words(facts.modes);
     for (std::string word; words >> word;) {
-        const double value = std::strtod(word.c_str() + 1, nullptr);
+        const double value = number_in(std::string_view(word).substr(1));
         if (word == "G0") motion = gcode::MotionCode::rapid;
         if (word == "G1") motion = gcode::MotionCode::straight;
         if (word == "G2") motion = gcode::MotionCode::arc_clockwise;
         if (word == "G3") motion = gcode::MotionCode::arc_counterclockwise;
-        if (word[0] == 'G' && is_plain(word) && !is_among(value, {0, 1, 2, 3}))
+        if (word == "G38.2") motion = gcode::MotionCode::probe_toward;
+        if (word == "G38.3") motion = gcode::MotionCode::try_probe_toward;
+        if (word == "G38.4") motion = gcode::MotionCode::probe_away;
+        if (word == "G38.5") motion = gcode::MotionCode::try_probe_away;
+        if (word[0] == 'G' && (plain_group(value).value_or(1) != 1 || value == 93.0))
             environment_.startup_code += word + ' ';
-        if (word == "G93") environment_.startup_code += word + ' ';
         if (word == "M3") spindle.direction = core::SpindleDirection::clockwise;
         if (word == "M4") spindle.direction = core::SpindleDirection::counterclockwise;
         if (word[0] == 'S') spindle.speed = value;
@@ -282,34 +365,68 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
         && file_->setup.spindle_at_start != core::SpindleDirection::stopped)
         spindle = {file_->setup.spindle_at_start, 1.0};
     step_ = facts.step;
-    made_->spindle = spindle;
+    arc_error_ = facts.arc_tolerance;
     if (facts.is_reset) called_.reset(); // otherwise Grbl itself forgets it with the next line
 }
 
 core::Result<void> LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
                                           uint64_t made_through) {
     if (judge_) follow(made_through, waiting_.size());
-    // A part of the others may have been made.
-    has_cut_ = has_cut_ || cuts() > 0;
+    // A part of the others may have been made, but not in check mode.
+    has_cut_ = has_cut_ || (made_ && made_->stock.log.size() > 0) || (!facts.is_dry && cuts() > 0);
     waiting_.clear();
-    if (auto placed = place(facts, position); !placed) return placed;
-    if (!made_) return {};
+    ahead_.reset();
+    problem_.clear();
+    if (facts.is_lost) is_set_up_ = false;
+    if (!facts.active())
+        problem_ = "The control does not say which work offset it uses.";
+    else if (!facts.stored_line.empty())
+        problem_ = fmt::format("Grbl runs the stored line {} at each reset, and nobody checks it: "
+                               "clear it ($N0= and $N1=) without the gate.",
+                               facts.stored_line);
+    else if (word_ && word_->kind != OperatorWord::Kind::sets_up)
+        if (auto taken = take_zero(facts); !taken) return taken;
+    if (word_ && word_->kind == OperatorWord::Kind::sets_up) is_set_up_ = false;
+    if (word_ && word_->tool) {
+        tool_ = core::ToolNumber{*word_->tool};
+        called_.reset();
+    }
+    tool_was_changed_ = !is_set_up_ && (tool_was_changed_ || (word_ && word_->tool));
+    word_.reset();
+    if (is_set_up_ && !made_)
+        if (auto built = build(facts); !built) return built;
+    if (facts.is_lost)
+        problem_ =
+            "The controller was restarted, and takes its place for zero. Home it, or touch off.";
     take_modes(facts, position);
+    knows_control_ = true;
+    if (!is_set_up_) return {};
     put_at(*made_, position_at(position - core::Vec3(0.0, 0.0, shift_)));
     made_->tool = tool_;
+    made_->spindle = spindle_;
     ahead_ = *made_;
+    judge_->begin_retreat();
     may_retreat_ = true;
     return {};
 }
 
 std::string LineCheck::objection() const {
-    return ahead_ ? objection(lowering_.offsets) : problem_;
+    constexpr const char* to_confirm =
+        "Jogs, probing and motions straight up pass unchecked, and no others, until you send "
+        "$FEELER=ZERO: the zero is set, and the work is where the set-up says.";
+    if (is_set_up_) return objection(lowering_.offsets);
+    return problem_.empty() ? to_confirm : problem_ + " " + to_confirm;
 }
 
 /// Why no motion may be made with these offsets; empty if there is no reason.
 std::string LineCheck::objection(const gcode::Offsets& offsets) const {
     if (!problem_.empty()) return problem_;
     const std::string name = gcode::name_of_offset(offsets.active);
+    if (takes_offsets_ && name != file_->stock_frame)
+        return fmt::format(
+            "{0} is in use, and the bodies of the set-up stand in {1}: let them stand "
+            "in {0} (frame), or state all work offsets.",
+            name, file_->stock_frame);
     if (!states_work_offset(*file_, offsets.active))
         return fmt::format("{} is in use, and the set-up does not state it.", name);
     const gcode::AxisValues stated = file_->environment.work_offset(offsets.active);
@@ -317,11 +434,14 @@ std::string LineCheck::objection(const gcode::Offsets& offsets) const {
         const double zero = offsets.work.origin[axis] + offsets.axis[axis].value_or(core::infinity);
         const double expected = stated[axis] + (axis == 2 ? shift_ : 0.0);
         if (std::abs(zero - expected) <= tolerance_) continue;
-        return fmt::format("{}{} {} is {} on the control and {} {} (mm).{}", name,
+        const std::string there =
+            takes_offsets_ ? fmt::format("was {} when the zero was set (mm). If the work "
+                                         "lies there now, send $FEELER=ZERO.",
+                                         number(expected))
+                           : fmt::format("{} in the set-up (mm).", number(expected));
+        return fmt::format("{}{} {} is {} on the control and {}", name,
                            offsets.axis[axis].value_or(0.0) != 0.0 ? " with G92" : "",
-                           core::axis_letters[axis], number(zero), number(expected),
-                           takes_offsets_ ? "since the stock was cut" : "in the set-up",
-                           takes_offsets_ ? " If there is a new workpiece, send $FEELER=NEW." : "");
+                           core::axis_letters[axis], number(zero), there);
     }
     const core::ToolAssembly& tool = file_->setup.tools.at(*tool_);
     if (std::abs(offsets.tool[2] - tool.length) > tolerance_)
@@ -331,8 +451,8 @@ std::string LineCheck::objection(const gcode::Offsets& offsets) const {
             core::value_of(*tool_), number(offsets.tool[2]), number(tool.length));
     if (called_ && *called_ != *tool_)
         return fmt::format(
-            "The program calls tool {0}, and tool {1} is in the spindle. Reset, change "
-            "the tool, and send $FEELER=T{0}.",
+            "The program calls tool {0}, and tool {1} is in the spindle. Change the tool, send "
+            "$FEELER=T{0}, touch off, and send $FEELER=ZERO.",
             core::value_of(*called_), core::value_of(*tool_));
     return {};
 }
@@ -341,6 +461,18 @@ std::string LineCheck::objection(const gcode::Offsets& offsets) const {
 void LineCheck::rewind() {
     ahead_ = *made_;
     for (const Permitted& line : waiting_) judge_->follow(line.events, *ahead_);
+}
+
+/// While nobody knows where the bodies are.
+LineVerdict LineCheck::judge_unchecked(LineVerdict verdict, const std::vector<core::Event>& events,
+                                       bool is_jog) const {
+    const bool goes_up = std::all_of(events.begin(), events.end(), [](const core::Event& event) {
+        return !moves(event) || is_straight_up(*motion_in(event));
+    });
+    verdict.asks_anew = !is_jog;
+    verdict.answer.may_move = !verdict.moves || is_jog || verdict.stops_at_contact || goes_up;
+    if (!verdict.answer.may_move) verdict.answer.reason = objection();
+    return verdict;
 }
 
 LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Event> events) {
@@ -364,12 +496,22 @@ LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Even
 }
 
 LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_jog) {
-    if (!ahead_) return not_understood(problem_, 9);
-    if (const auto code = refused_machine_code(text))
-        return not_understood(fmt::format("Grbl has no M{}.", *code), 20);
+    if (!knows_control_) return not_understood("Nothing is known of the control yet.", 9);
     // Grbl makes such a jog to machine zero.
     if (is_jog && text.find_first_of("XYZ") == std::string::npos)
         return not_understood("It has no axis.", 26);
+    const auto words = words_of(is_jog ? text.substr(3) : text);
+    if (!words)
+        return not_understood("It does not consist of letters with numbers.",
+                              std::isalpha(static_cast<unsigned char>(text[0])) != 0 ? 2 : 1);
+    for (const GrblWord& word : *words)
+        if (std::abs(word.value - word.exact) > least_difference)
+            return not_understood(
+                fmt::format("Grbl takes eight digits of a number, so it reads {}{}.", word.letter,
+                            word.value),
+                2);
+    if (const auto code = refused_machine_code(*words))
+        return not_understood(fmt::format("Grbl has no M{}.", *code), 20);
     const std::string line = is_jog ? "G1G94" + text.substr(3) : text;
     auto program = gcode::program_from_text(line, "the line");
     if (!program) return not_understood(program.error().message, 20);
@@ -382,9 +524,16 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
     const auto read = interpreter.next(control);
     if (!read) return not_understood(read.error().message, grbl_error_in(read.error().message));
     LineVerdict verdict;
-    verdict.is_plain = is_plain(text);
-    verdict.changes_offsets = sets_offsets(text);
+    verdict.is_plain =
+        !is_jog && is_plain(*words) && control_.modal.feed_mode == gcode::FeedMode::per_minute;
+    verdict.asks_anew = sets_offsets(text);
     verdict.answer.may_move = true;
+    // Grbl forgets the feed when G94 ends G93.
+    const bool ends_inverse_time = control_.modal.feed_mode == gcode::FeedMode::inverse_time
+                                   && control.modal.feed_mode == gcode::FeedMode::per_minute;
+    if (ends_inverse_time && text.find('F') == std::string::npos) {
+        control.modal.feed.reset();
+    }
     if (!*read) { // it sets modes
         if (!is_jog) control_ = std::move(control);
         return verdict;
@@ -400,7 +549,7 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
 
     gcode::Lowering lowering = lowering_;
     std::vector<core::Event> events =
-        events_of(judge_->setup(), block, lowering, file_->speed_by_hand);
+        events_of(file_->setup, block, lowering, file_->speed_by_hand);
     std::erase_if(events,
                   [](const core::Event& event) { return motion_in(event) && !moves(event); });
     for (core::Event& event : events) lower_by(event, shift_);
@@ -412,8 +561,21 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
         std::any_of(events.begin(), events.end(), [](const core::Event& event) {
             return motion_in(event) && motion_in(event)->stops_at_contact;
         });
+    verdict.asks_anew = verdict.asks_anew || verdict.stops_at_contact;
     const auto called = control.modal.selected_tool;
     if (called) called_ = called;
+    if (!is_set_up_) {
+        verdict = judge_unchecked(std::move(verdict), events, is_jog);
+        // Behind motions the control is asked anew.
+        if (verdict.answer.may_move && !verdict.moves) control_ = std::move(control);
+        return verdict;
+    }
+    if (verdict.moves && has_arc(events) && arc_error_ > most_arc_error)
+        return not_understood(
+            fmt::format("Grbl makes arcs with chords up to {:.3g} mm off ($12): set "
+                        "it to {:.3g} or less without the gate.",
+                        arc_error_, most_arc_error),
+            9);
     if (verdict.moves) {
         if (std::string why = objection(lowering.offsets); !why.empty())
             return not_understood(std::move(why), 9);
@@ -450,22 +612,5 @@ bool LineCheck::follow(uint64_t made_through, size_t most) {
 
 /// How many motions have cut, or may have.
 size_t LineCheck::cuts() const { return ahead_ ? ahead_->stock.log.size() : 0; }
-
-core::Result<void> LineCheck::change_tool(int number) {
-    const core::ToolNumber tool{number};
-    if (!file_->setup.tools.contains(tool))
-        return core::fail_file(path_, fmt::format("does not describe tool {}", number));
-    if (tool_ != tool) cuts_before_tool_ = cuts();
-    tool_ = tool;
-    return {};
-}
-
-void LineCheck::renew_stock() {
-    judge_.reset(); // with the next synchronise
-    made_.reset();
-    ahead_.reset();
-    waiting_.clear();
-    has_cut_ = false;
-}
 
 } // namespace app

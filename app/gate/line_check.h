@@ -18,32 +18,42 @@ namespace app {
 
 /// What is said about a line for Grbl.
 struct LineVerdict {
-    LiveAnswer answer;          // whether it may be sent; if not, why
-    int error = 9;              // if not: Grbl's number for the sender
-    bool moves = false;         // it has a motion
-    bool fills_planner = false; // it gives the planner at least one block
-    bool is_plain = true; // motions and modes alone; any other line waits until all are answered
-    bool changes_offsets = false;  // perhaps
-    bool stops_at_contact = false; // a probing motion: where it ends is not known
+    LiveAnswer answer;             // whether it may be sent; if not, why
+    int error = 9;                 // if not: Grbl's number for the sender
+    bool moves = false;            // it has a motion
+    bool fills_planner = false;    // it gives the planner at least one block
+    bool is_plain = false;         // Grbl has no reason to refuse it
+    bool stops_at_contact = false; // a probing motion
+    bool asks_anew = false;        // what is known of the control does not hold behind it
+};
+
+/// What the operator says while nothing moves.
+struct OperatorWord {
+    enum class Kind : uint8_t { sets_up, zero_is_set, new_workpiece } kind = Kind::sets_up;
+    std::optional<int> tool{}; // that is in the spindle now; with `sets_up`
 };
 
 /// Checks the lines of a sender one by one, as Grbl would run them, against fixtures, machine
 /// bodies and the stock as it is cut.
 ///
-/// Grbl's coordinates are those of the set-up's machine. A set-up that states no work offsets takes
-/// them from the control: its bodies stand relative to the program's zero.
+/// Grbl's coordinates are those of the set-up's machine. Where the set-up states no work offsets,
+/// its bodies stand at the zero that the operator has confirmed. Until then, and while a tool is
+/// touched off, nobody knows where they are: jogs, probing and motions straight up may then be made
+/// without a check, and no others.
 class LineCheck {
 public:
-    /// `tool`: in the spindle; empty: the one that the set-up states, or its only one.
-    /// `tolerance`: how far offsets of the control may differ from the set-up, mm.
-    ///
+    struct Options {
+        std::optional<int> tool;  // in the spindle; empty: as the set-up states, or its only one
+        double tolerance = 0.01;  // how far offsets of the control may differ from the set-up, mm
+        bool zero_is_set = false; // without a word of the operator
+    };
+
     /// Errors: as read_setup, and why_incomplete.
-    static core::Result<LineCheck> open(const std::string& setup, std::optional<int> tool,
-                                        double tolerance);
+    static core::Result<LineCheck> open(const std::string& setup, const Options& options);
 
     /// Takes over what the control says while it stands still at `position` (machine coordinates,
     /// mm). Lines up to `made_through` were made, and those after it were not, or not to their end:
-    /// what they cut stays in the stock. The first call builds the model of the stock.
+    /// what they cut stays in the stock. The model of the stock is built when the zero is known.
     ///
     /// Errors: why the stock cannot be modelled, or the set-up cannot be read any more.
     core::Result<void> synchronise(const GrblFacts& facts, const core::Vec3& position,
@@ -59,17 +69,13 @@ public:
     /// Whether some are left.
     bool follow(uint64_t made_through, size_t most);
 
-    /// The operator has put a tool into the spindle, and nothing moves: the work offset in Z may
-    /// then change with its length.
-    ///
-    /// Errors: a tool that the set-up does not describe.
-    core::Result<void> change_tool(int number);
-    /// A new workpiece is in its place.
-    void renew_stock();
+    /// Takes effect with the next synchronise. Why it is not possible; empty if it is.
+    std::string hear(const OperatorWord& word);
 
-    std::optional<core::ToolNumber> tool() const { return tool_; }
     /// Why no motion may be made now; empty if there is no reason.
     std::string objection() const;
+    /// Whether the place of the bodies is known.
+    bool is_set_up() const { return is_set_up_; }
 
 private:
     struct Permitted {
@@ -78,29 +84,36 @@ private:
     };
 
     LineCheck() = default;
-    core::Result<void> place(const GrblFacts& facts, const core::Vec3& position);
+    core::Result<void> take_zero(const GrblFacts& facts);
+    core::Result<void> build(const GrblFacts& facts);
+    bool use_shift(double z);
     void take_modes(const GrblFacts& facts, const core::Vec3& position);
     std::string objection(const gcode::Offsets& offsets) const;
+    LineVerdict judge_unchecked(LineVerdict verdict, const std::vector<core::Event>& events,
+                                bool is_jog) const;
     LineVerdict judge_motions(LineVerdict verdict, std::vector<core::Event> events);
     void rewind();
     size_t cuts() const;
 
     std::string path_, text_; // of the set-up
     double tolerance_ = 0.01;
-    bool takes_offsets_ = false; // from the control
+    bool takes_offsets_ = false; // the set-up states none
     std::optional<SetupFile> file_;
-    std::optional<MotionJudge> judge_;
-    gcode::Environment environment_; // of the control
+    std::optional<MotionJudge> judge_; // once the place of the bodies was known
+    gcode::Environment environment_;   // of the control
     gcode::InterpreterState control_;
     gcode::Lowering lowering_;
+    core::SpindleChange spindle_;                   // when it was asked last
     std::optional<core::SimulatorState> ahead_;     // behind all lines that may be sent
     std::optional<core::SimulatorState> made_;      // behind those that have been made
     std::deque<Permitted> waiting_;                 // what is in `ahead_` and not in `made_`
     std::optional<core::ToolNumber> tool_, called_; // in the spindle; by T
     core::Vec3 step_ = core::Vec3(0.0);             // of the axes, mm; 0: not known
-    double shift_ = 0.0; // mm: Z of the control minus that of the set-up, since a tool change
-    std::optional<size_t> cuts_before_tool_; // at the last tool change
-    bool has_cut_ = false, may_retreat_ = false;
+    double arc_error_ = 0.0;                        // how far Grbl's chords are from an arc, mm
+    double shift_ = 0.0; // mm: Z of the control minus that of the bodies, since a tool change
+    std::optional<OperatorWord> word_;                  // not in effect yet
+    bool is_set_up_ = false, tool_was_changed_ = false; // since the zero was set
+    bool has_cut_ = false, may_retreat_ = false, knows_control_ = false;
     std::string problem_; // why nothing may move: found when the control was asked
 };
 

@@ -351,6 +351,7 @@ feeler_segment LiveCheck::with_corner(feeler_segment motion) const {
 }
 
 LiveAnswer LiveCheck::judge(const feeler_segment& queued) {
+    judge_.begin_retreat();
     if (std::string why = begin(queued); !why.empty()) return refused({.reason = std::move(why)});
     const feeler_segment motion = with_corner(queued);
     const std::vector<core::Event> events = events_of(motion, *ahead_);

@@ -37,7 +37,8 @@ public:
 
     /// As judge(), after a violation that the operator has not cleared: the motion may move if it
     /// loses no clearance, without cutting. All along it, no pair of bodies is nearer to each other
-    /// than at its start by more than 0.01 mm, unless it stays 10 mm apart and twice its allowance.
+    /// than at its start, or at an earlier one since the violation, by more than 0.01 mm, unless it
+    /// stays 10 mm apart and twice its allowance.
     /// Straight up it may leave the stock in any case: a guard that was started anew does not know
     /// what was cut.
     LiveAnswer judge_retreat(const feeler_segment& motion);

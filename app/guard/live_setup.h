@@ -10,8 +10,9 @@ namespace app {
 
 struct ProgramSettings;
 
-/// Why a set-up cannot be that of a machine which is watched while it runs; empty if it can. It must
-/// be complete, since there is no program from which anything is inferred. `who` watches: "the guard".
+/// Why a set-up cannot be that of a machine which is watched while it runs; empty if it can. It
+/// must be complete, since there is no program from which anything is inferred. `who` watches: "the
+/// guard".
 std::string why_incomplete(const SetupFile& setup, std::string_view who);
 
 /// Reads the set-up of a machine that is watched while it runs.

@@ -9,7 +9,7 @@
 namespace app {
 namespace {
 
-constexpr double no_travel = 1e-6;        // mm or degrees
+constexpr double no_travel = 1e-6;         // mm or degrees
 constexpr double retreat_tolerance = 0.01; // mm
 
 /// What made a motion not clear, for the operator: the first error, else the first warning.
@@ -159,6 +159,17 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
     const core::BlockResult before = run(thorough_, before_motion(events), now, true);
     const core::BlockResult result = run(thorough_, events, state, true);
     state.spindle = spindle;
+    const auto reached = [&](const core::Pair& pair) {
+        return std::find_if(reached_.begin(), reached_.end(),
+                            [&](const auto& one) { return one.first == pair; });
+    };
+    for (const core::PairClearance& pair : before.pairs) {
+        const auto known = reached(pair.pair);
+        if (known == reached_.end())
+            reached_.emplace_back(pair.pair, pair.lower);
+        else
+            known->second = std::max(known->second, pair.lower);
+    }
     // Out of what it has cut, or of what the set-up still takes for stock.
     const bool goes_up = goes_straight_up(events);
     // Bounds of a motion include what the control may round off; those at rest do not.
@@ -171,7 +182,8 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
         if (goes_up && is_within && !pair.pair.fixture) return false;
         if (pair.verdict == core::Verdict::collision) return true;
         const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
-        const double at_rest = is_known ? known->lower : core::infinity;
+        const auto best = reached(pair.pair);
+        const double at_rest = best != reached_.end() ? best->second : core::infinity;
         return pair.lower < limit && pair.lower < at_rest - slack;
     };
     const auto is_other_error = [](const core::Finding& finding) {

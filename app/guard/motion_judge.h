@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/motion/event.h"
@@ -48,10 +49,12 @@ public:
     /// Leaves the state as it is.
     std::string problem_beyond_contact(std::vector<core::Event> events, core::SimulatorState state);
 
+    /// Forgets the clearances that retreats have reached.
+    void begin_retreat() { reached_.clear(); }
     /// Events may be made that lose no clearance, without cutting: all along them, no pair of
-    /// bodies is nearer to each other than at their start by more than 0.01 mm and `rounding`,
-    /// unless it stays 10 mm apart and twice its allowance. Straight up they may leave the stock in
-    /// any case: nobody may know what was cut.
+    /// bodies is nearer to each other than it has been at rest since begin_retreat, by more than
+    /// 0.01 mm and `rounding`, unless it stays 10 mm apart and twice its allowance. Straight up
+    /// they may leave the stock in any case: nobody may know what was cut.
     LiveAnswer judge_retreat(std::vector<core::Event> events, double rounding,
                              core::SimulatorState& state);
 
@@ -62,6 +65,8 @@ private:
     core::Setup setup_;    // measures only what a verdict needs
     core::Setup thorough_; // measures every pair
     uint32_t block_ = 0;
+    // The largest lower bounds at rest since begin_retreat.
+    std::vector<std::pair<core::Pair, double>> reached_;
 };
 
 } // namespace app

@@ -154,7 +154,8 @@ protected:
     }
 
     app::LineCheck open(const std::string& text) {
-        auto check = app::LineCheck::open(folder_.write("router.toml", text), {}, 0.01);
+        auto check =
+            app::LineCheck::open(folder_.write("router.toml", text), {.zero_is_set = true});
         if (!check) throw std::runtime_error(check.error().message);
         return *std::move(check);
     }
@@ -193,10 +194,22 @@ TEST_F(CheckedLines, TellWhatGrblRefuses) {
     EXPECT_EQ(judge("M6").error, 20);
     EXPECT_EQ(judge("G0A5").error, 20);
     EXPECT_EQ(judge("#1=5").error, 1);
-    EXPECT_EQ(judge("$J=F100", true).error, 26); // Grbl would go to machine zero
+    EXPECT_EQ(judge("%").error, 1);
+    EXPECT_EQ(judge("G0X-").error, 2);
+    EXPECT_EQ(judge("G0X0000000012.5").error, 2); // Grbl reads 0
+    EXPECT_EQ(judge("$J=F100", true).error, 26);  // Grbl would go to machine zero
     EXPECT_TRUE(check_.synchronise(facts_at_zero("G1 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0"),
                                    core::Vec3(0, 0, 40), number_));
     EXPECT_EQ(judge("X1").error, 22);
+}
+
+/// Grbl forgets the feed then.
+TEST_F(CheckedLines, NeedAFeedAfterG93) {
+    EXPECT_TRUE(passes("G93G1X1F2"));
+    EXPECT_FALSE(judge("X2F2").is_plain);
+    EXPECT_TRUE(passes("G94"));
+    EXPECT_EQ(judge("X3").error, 22);
+    EXPECT_TRUE(passes("X3F500"));
 }
 
 TEST_F(CheckedLines, LeaveNoModesAfterJogs) {
@@ -211,13 +224,18 @@ TEST_F(CheckedLines, LeaveNoModesAfterJogs) {
 TEST_F(CheckedLines, TellWhatFillsThePlanner) {
     EXPECT_TRUE(judge("G0X1").fills_planner);
     EXPECT_FALSE(judge("X1").fills_planner);
-    EXPECT_FALSE(judge("X1.003").fills_planner); // less than a step
-    EXPECT_TRUE(judge("X1.003").answer.may_move);
+    EXPECT_FALSE(judge("X1.004").fills_planner); // about than a step
+    EXPECT_TRUE(judge("X1.004").answer.may_move);
     EXPECT_FALSE(judge("G4P1").is_plain);
     EXPECT_FALSE(judge("M5").is_plain);
     EXPECT_FALSE(judge("G28.1").is_plain);
     EXPECT_TRUE(judge("N10G1X2F100S500").is_plain);
-    EXPECT_TRUE(judge("G10L2P2X5").changes_offsets);
+    EXPECT_TRUE(judge("G90G21G17G54").is_plain);
+    for (const char* line : {"G2X3Y1R5", "G1F0X3", "G94", "G90G91", "X1X2", "G53G0X2", "X4P1"}) {
+        const app::LineVerdict verdict = judge(line);
+        EXPECT_FALSE(verdict.answer.may_move && verdict.is_plain) << line;
+    }
+    EXPECT_TRUE(judge("G10L2P2X5").asks_anew);
 }
 
 TEST_F(CheckedLines, CutOnlyWhenTheyWereMade) {
@@ -240,15 +258,85 @@ TEST_F(CheckedLines, MayRetreatOnlyBeforeTheFirstThatIsClear) {
     EXPECT_FALSE(passes("Z-5"));
 }
 
+/// Until the operator says that the zero is set, nobody knows where the bodies are.
+TEST_F(CheckedLines, AreUncheckedAndFewBeforeTheZeroIsSet) {
+    using Kind = app::OperatorWord::Kind;
+    auto opened = app::LineCheck::open(folder_.write("router.toml", bodies), {});
+    ASSERT_TRUE(opened);
+    check_ = *std::move(opened);
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0));
+    EXPECT_THAT(check_.objection(), HasSubstr("$FEELER=ZERO"));
+    EXPECT_TRUE(passes("G21"));
+    EXPECT_TRUE(judge("$J=G91X70Z-30F500", true).answer.may_move);
+    EXPECT_TRUE(passes("G38.2Z-10F50"));
+    EXPECT_TRUE(passes("G0Z50"));
+    EXPECT_TRUE(passes("G10L20P1X5"));
+    EXPECT_THAT(judge("G0X1").answer.reason, HasSubstr("$FEELER=ZERO"));
+    EXPECT_THAT(judge("G0Z30").answer.reason, HasSubstr("$FEELER=ZERO"));
+    EXPECT_EQ(check_.hear({Kind::zero_is_set, {}}), "");
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), number_));
+    EXPECT_EQ(check_.objection(), "");
+    EXPECT_TRUE(passes("G0X1"));
+    EXPECT_FALSE(passes("G0X70Z5"));
+    EXPECT_EQ(check_.hear({Kind::sets_up, {}}), "");
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(1, 0, 40), number_));
+    EXPECT_FALSE(passes("G0X2"));
+    EXPECT_THAT(check_.hear({Kind::sets_up, 5}), HasSubstr("does not describe tool 5"));
+}
+
+/// A program cannot move the bodies by setting an offset.
+TEST_F(CheckedLines, DoNotMoveTheBodies) {
+    EXPECT_TRUE(judge("G92Z80").asks_anew);
+    EXPECT_THAT(judge("G0X70").answer.reason,
+                HasSubstr("G54 with G92 Z is -40.000 on the control"));
+    app::GrblFacts facts = facts_at_zero();
+    facts.axis_offset.z = -40.0;
+    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_));
+    EXPECT_THAT(check_.objection(), HasSubstr("$FEELER=ZERO"));
+    EXPECT_FALSE(passes("G0X70"));
+    EXPECT_EQ(check_.hear({app::OperatorWord::Kind::zero_is_set, {}}), "");
+    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_));
+    EXPECT_TRUE(passes("G0X70"));    // 80 above the clamp's lower end
+    EXPECT_FALSE(passes("G0X0Z-1")); // the stock is 40 lower, too
+    EXPECT_TRUE(check_.synchronise(facts_at_zero("G0 G55 G17 G21 G90 G94 M3 M9 T0 F500 S1000"),
+                                   core::Vec3(0, 0, 40), number_));
+    EXPECT_THAT(check_.objection(), HasSubstr("G55 is in use"));
+}
+
+TEST_F(CheckedLines, NeedFineArcsOfGrbl) {
+    app::GrblFacts facts = facts_at_zero();
+    facts.arc_tolerance = 0.5;
+    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), 0));
+    EXPECT_TRUE(passes("G1X1"));
+    EXPECT_THAT(judge("G2X3R1").answer.reason, HasSubstr("$12"));
+}
+
+/// The clearance of many small steps does not add up.
+TEST_F(CheckedLines, DoNotCreepTowardsABody) {
+    EXPECT_TRUE(
+        check_.synchronise(facts_at_zero(), core::Vec3(54.5, 0, 5), 0)); // 0.5 from the clamp
+    EXPECT_TRUE(passes("G91G0X0.009"));
+    EXPECT_FALSE(passes("X0.009"));
+    EXPECT_TRUE(passes("X-1"));
+    EXPECT_FALSE(passes("X0.5"));
+    EXPECT_TRUE(passes("X-0.1"));
+}
+
 /// Grbl with a planner of three blocks that never moves, and a sender.
 class GatedSender : public ::testing::Test {
 protected:
     GatedSender()
-        : check_(app::LineCheck::open(folder_.write("router.toml", bodies), {}, 0.01).value()) {}
+        : check_(app::LineCheck::open(folder_.write("router.toml", bodies), {.zero_is_set = true})
+                     .value()) {}
 
     app::Gate::Links links() {
         return {[this](std::string_view bytes) { take(bytes, to_sender_, at_sender_); },
-                [this](std::string_view bytes) { at_controller_ += bytes; },
+                [this](std::string_view bytes) {
+                    if (bytes == "?")
+                        ++asked_;
+                    else
+                        at_controller_ += bytes;
+                },
                 [](const std::string&) {},
                 [this](auto work, auto done) {
                     tasks_.push_back([this, work, done] {
@@ -260,7 +348,7 @@ protected:
     static void take(std::string_view bytes, std::string& rest, std::vector<std::string>& lines) {
         rest += bytes;
         for (size_t end = rest.find("\r\n"); end != std::string::npos; end = rest.find("\r\n")) {
-            lines.push_back(rest.substr(0, end));
+            if (rest[0] != '<') lines.push_back(rest.substr(0, end));
             rest.erase(0, end + 2);
         }
     }
@@ -285,19 +373,18 @@ protected:
     void play_controller(size_t most = 1000) {
         check_all();
         while (true) {
-            const size_t status = at_controller_.find('?');
             const size_t end = at_controller_.find('\n');
-            if (status != std::string::npos) {
-                at_controller_.erase(status, 1);
-                time_ += 300;
-                gate_.tick(time_);
-                gate_.from_controller(fmt::format("<{}|MPos:{}|FS:0,0>\r\n", state_, position_));
-            } else if (end != std::string::npos && most > 0) {
+            if (end != std::string::npos && most > 0) {
                 const std::string line = at_controller_.substr(0, end);
                 at_controller_.erase(0, end + 1);
                 if (line[0] != '$') run_.push_back(line);
                 --most;
                 gate_.from_controller(answer_to(line));
+            } else if (asked_ > 0) {
+                --asked_;
+                time_ += 300;
+                gate_.tick(time_);
+                gate_.from_controller(fmt::format("<{}|MPos:{}|FS:0,0>\r\n", state_, position_));
             } else {
                 return;
             }
@@ -323,6 +410,7 @@ protected:
     std::deque<std::function<void()>> tasks_;
     std::string state_ = "Idle", position_ = "0.000,0.000,40.000";
     int64_t time_ = 0;
+    int asked_ = 0; // for the status
     app::Gate gate_{links()};
 };
 
@@ -413,10 +501,119 @@ TEST_F(GatedSender, HoldsTheFeedWhenGrblRefusesALineAndHasOthers) {
     EXPECT_EQ(at_controller_, "!");
     at_controller_.clear();
     gate_.from_controller("ok\r\nok\r\n");
-    EXPECT_THAT(at_sender_, ElementsAre(HasSubstr("had expected"), "error:20", "ok", "ok"));
+    EXPECT_THAT(at_sender_, ElementsAre(HasSubstr("Grbl refused G1X1"), "error:20", "ok", "ok"));
     send("G1X4\n");
     EXPECT_EQ(at_sender_.back(), "error:9");
     EXPECT_EQ(at_controller_, "");
+}
+
+TEST_F(GatedSender, DoesNotResumeAfterThat) {
+    begin();
+    gate_.from_sender("G1X1\nG1X2\n");
+    check_all();
+    gate_.from_controller("error:20\r\n");
+    at_controller_.clear();
+    gate_.from_sender("~");
+    EXPECT_EQ(at_controller_, "");
+    gate_.from_controller("ok\r\n");
+    send("$X\nG1X4\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    gate_.from_sender("\x18");
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n");
+    at_controller_.clear();
+    send("G1X4\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+TEST_F(GatedSender, CancelsAJogAgainThatWasOnItsWay) {
+    begin();
+    gate_.from_sender("$J=X1F100\n$J=X2F100\n");
+    check_all();
+    EXPECT_EQ(at_controller_, "$J=X1F100\n");
+    at_controller_.clear();
+    gate_.from_sender("\x85");
+    EXPECT_EQ(at_controller_, "\x85");
+    gate_.from_controller("ok\r\n");
+    EXPECT_EQ(at_controller_, "\x85\x85");
+    EXPECT_THAT(at_sender_, ElementsAre("ok", "ok"));
+}
+
+TEST_F(GatedSender, NeverFillsThePlannerWithJogs) {
+    begin();
+    std::string text;
+    for (int i = 1; i <= 10; ++i) text += fmt::format("$J=X{}F100\n", i);
+    state_ = "Jog";
+    gate_.from_sender(text);
+    for (int i = 0; i < 10; ++i) {
+        check_all();
+        const size_t end = at_controller_.find('\n');
+        if (end == std::string::npos) break;
+        run_.push_back(at_controller_.substr(0, end));
+        at_controller_.clear();
+        gate_.from_controller("ok\r\n");
+    }
+    EXPECT_LE(run_.size(), 2U); // of three blocks
+    state_ = "Idle";
+    asked_ = 1;
+    play_controller();
+    EXPECT_EQ(std::count(at_sender_.begin(), at_sender_.end(), "ok"), 10);
+}
+
+TEST_F(GatedSender, LosesWhatFollowsTheEndOfCheckMode) {
+    begin();
+    send("$C\nG0X53\n");
+    EXPECT_THAT(run_, ElementsAre("G0X53"));
+    state_ = "Check";
+    gate_.from_sender("$C\nG0X0\n");
+    play_controller();
+    EXPECT_THAT(run_, ElementsAre("G0X53"));
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n");
+    state_ = "Idle";
+    play_controller();
+    EXPECT_THAT(run_, ElementsAre("G0X53"));
+    send("G0X1\n");
+    EXPECT_THAT(run_, ElementsAre("G0X53", "G0X1"));
+}
+
+TEST_F(GatedSender, IsToldThatTheControllerWasRestarted) {
+    begin();
+    send("G0X5\n");
+    gate_.from_controller("<Idle|MPos:5.000,0.000,40.000|FS:0,0>\r\n");
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n");
+    position_ = "0.000,0.000,0.000";
+    send("G0X9\n");
+    EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("was restarted")));
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    send("$X\n$FEELER=NEW\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+TEST_F(GatedSender, SpeaksToTheOperator) {
+    begin();
+    for (const char* line : {"$FEELER=T", "$FEELER=T99999999999", "$FEELER=T-1", "$FEELER=T7",
+                             "$FEELER=X", "$FEELERS", "$J", "[ESP1]"}) {
+        send(std::string(line) + "\n");
+        EXPECT_EQ(at_sender_.back(), "error:3") << line;
+    }
+    send("$FEELER\n");
+    EXPECT_THAT(at_sender_[at_sender_.size() - 2], HasSubstr("0 lines passed"));
+    send("$FEELER=SETUP\nG0X1\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    send("$X\n$FEELER=ZERO\nG0X1\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+TEST_F(GatedSender, IsToldOfAControllerThatDoesNotAnswer) {
+    begin();
+    gate_.from_sender("G1X1\n");
+    check_all();
+    at_controller_.clear();
+    for (int i = 0; i < 40; ++i) {
+        gate_.tick(time_ += 100);
+        if (asked_ > 0) gate_.from_controller("<Idle|MPos:0,0,40|FS:0,0>\r\n");
+        asked_ = 0;
+    }
+    EXPECT_THAT(at_sender_, ElementsAre(HasSubstr("does not answer")));
 }
 
 TEST_F(GatedSender, IsLockedWhileTheControllerIsInAlarm) {

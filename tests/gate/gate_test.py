@@ -57,7 +57,7 @@ FAST = {110: 3000, 111: 3000, 112: 3000}
 class Rig:
     """A controller, a gate and a sender."""
 
-    def __init__(self, setup=BODIES + TOOL_1, arguments=(), **controller):
+    def __init__(self, setup=BODIES + TOOL_1, arguments=("--zero-is-set",), **controller):
         controller.setdefault("speed", 60)
         controller.setdefault("offsets", {"G54": ZERO})
         controller["settings"] = {**FAST, **controller.get("settings", {})}
@@ -510,11 +510,21 @@ def compares_offsets_with_the_setup():
         assert near(rig.position(), (3, 0, 35)), rig.position()
 
 
-def takes_offsets_from_the_control():
-    """The bodies stand where the program's zero is, also after touching off."""
-    with Rig(offsets={"G54": (-10, -10, -10)}, position=(-200, -150, -20)) as rig:
+def takes_the_zero_from_the_control():
+    """The bodies stand where the program's zero is when the operator says so."""
+    with Rig(arguments=(), offsets={"G54": (-10, -10, -10)}, position=(-200, -150, -20)) as rig:
         rig.expect("G21G90")
+        rig.refused("G0X0", "$FEELER=ZERO")
+        rig.expect("$X")
+        rig.expect("$J=G91X-1F5000")  # unchecked
+        rig.expect("$J=G91X1F5000")
+        rig.expect("G0Z-5")  # up
+        rig.expect("G0Z0")
+        rig.settle()
+        assert rig.simulator.machine_position()[2] == -10
+        rig.expect("$J=G53G90Z-20F5000")
         rig.expect("G10L20P1X0Y0Z40")  # so G54 is at ZERO
+        rig.expect("$FEELER=ZERO")
         rig.refused("G0X70Z5", "clamp")
         rig.expect("$X")
         rig.expect("M3S1000")
@@ -524,9 +534,10 @@ def takes_offsets_from_the_control():
         rig.expect("G0Z30")
         rig.settle()
         assert near(rig.position(), (0, 0, 30)), rig.position()
-        rig.expect("G10L20P1X50")  # another place, and the stock is cut
-        rig.refused("G0X51", "since the stock was cut", "$FEELER=NEW")
+        rig.expect("G10L20P1X50")
+        rig.refused("G0X51", "when the zero was set", "$FEELER=ZERO")
         rig.expect("$X")
+        assert "$FEELER=NEW" in rig.expect("$FEELER=ZERO")  # the stock is cut
         rig.expect("$FEELER=NEW")
         rig.expect("G0X20")
         rig.refused("G0Z-2", "stock")
@@ -534,16 +545,19 @@ def takes_offsets_from_the_control():
 
 def follows_a_tool_change():
     """The new tool is touched off, and what was cut stays cut."""
-    with Rig(setup=BODIES + TOOL_1 + TOOL_2, arguments=("--tool", "1")) as rig:
+    with Rig(setup=BODIES + TOOL_1 + TOOL_2, arguments=("--tool", "1", "--zero-is-set")) as rig:
         for line in ("G21G90M3S1000", "T1", "G0X-60Y0Z30", "G0Z-5", "G1X40F3000", "G0Z30", "T2"):
             rig.expect(line)
         rig.refused("G0X0", "calls tool 2", "$FEELER=T2")
         rig.expect("$X")
         rig.refused("$FEELER=T7", "does not describe", error=3)
         rig.expect("$FEELER=T2")
-        rig.settle()
+        rig.refused("G0X0", "$FEELER=ZERO")
+        rig.expect("$X")
         # Tool 2 is 17 mm shorter: the same place is lower on the machine.
+        rig.expect("$J=G91Z-17F5000")
         rig.expect("G10L2P1Z-77")
+        rig.expect("$FEELER=ZERO")
         rig.expect("G0X0")
         rig.expect("G0Z-4.5")  # in the slot
         rig.refused("G0Y8", "stock")
@@ -551,6 +565,10 @@ def follows_a_tool_change():
         rig.expect("G0Z31")
         rig.settle()
         assert near(rig.simulator.machine_position(), (-200, -150, -46)), rig.position()
+        rig.expect("$FEELER=T2")  # another one of the same kind
+        rig.expect("G10L2P1Z-76")
+        rig.expect("$FEELER=ZERO")
+        rig.expect("G0Z-4.5")
 
 
 def probes():
@@ -572,7 +590,7 @@ def survives_an_error_that_it_did_not_expect():
         rig.write("G21G90G0Z35\nG1X0Y0F5000\nG1X10\nG1Y40\nG1X20\nG1X0\n")
         until(lambda: len(rig.replies()) == 6, "replies")
         assert "error:20" in rig.replies(), rig.lines
-        assert any("had expected" in line for line in rig.lines), rig.lines
+        assert any("Grbl refused" in line for line in rig.lines), rig.lines
         until(lambda: rig.simulator.state in ("Hold", "Idle"), "the hold")
         rig.refused("G0X5")
 
@@ -684,7 +702,7 @@ def serves_a_terminal():
         link = os.path.join(folder, "grbl")
         port = rig.simulator._listener.getsockname()[1]
         gate = subprocess.Popen([FEELER, "gate", "--setup", rig.setup, "--controller",
-                                 f"127.0.0.1:{port}", "--pty", link])
+                                 f"127.0.0.1:{port}", "--zero-is-set", "--pty", link])
         try:
             for _ in range(2):
                 until(lambda: os.path.exists(link), "the terminal")
