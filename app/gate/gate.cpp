@@ -14,13 +14,14 @@ namespace {
 constexpr int64_t rest = 250;            // ms without an answer until Idle counts as standing still
 constexpr int64_t asking_interval = 200; // ms between two requests for the status
 constexpr int64_t patience = 2000;       // ms
-constexpr size_t longest_line = 1024;    // bytes
-constexpr size_t usual_planner = 15;     // blocks
-constexpr size_t usual_buffer = 128;     // bytes, of Grbl on an Arduino Uno
-constexpr size_t largest_buffer = 1024;  // bytes that are used of a larger one
-constexpr size_t behind_planner = 8;     // blocks that have left the planner and are still made
-constexpr size_t followed_at_once = 16;  // lines whose cuts are followed before the next check
-constexpr int locked_error = 9;          // G-code is locked out
+constexpr int64_t operators_pause = 1000; // ms
+constexpr size_t longest_line = 1024;     // bytes
+constexpr size_t usual_planner = 15;      // blocks
+constexpr size_t usual_buffer = 128;      // bytes, of Grbl on an Arduino Uno
+constexpr size_t largest_buffer = 1024;   // bytes that are used of a larger one
+constexpr size_t behind_planner = 8;      // blocks that have left the planner and are still made
+constexpr size_t followed_at_once = 16;   // lines whose cuts are followed before the next check
+constexpr int locked_error = 9;           // G-code is locked out
 constexpr std::string_view locked = "error:9";
 constexpr std::string_view how_to_go_on =
     "To go on, unlock ($X) or reset Grbl, when the machine stands still.";
@@ -99,6 +100,7 @@ void Gate::take_line() {
     const bool is_too_long = from_sender_.size() > longest_line;
     line->text = as_grbl_reads(from_sender_);
     line->kind = kind_of(line->text);
+    line->is_after_pause = lines_.empty() && now_ - last_reply_ >= operators_pause;
     from_sender_.clear();
     if (awaits_reset_) return; // Grbl loses it
     lines_.push_back(line);
@@ -111,8 +113,10 @@ void Gate::answer(const LinePointer& line, std::string reply) {
 }
 
 void Gate::flush_replies() {
-    for (; !lines_.empty() && lines_.front()->stage == Stage::answered; lines_.pop_front())
+    for (; !lines_.empty() && lines_.front()->stage == Stage::answered; lines_.pop_front()) {
         links_.to_sender(lines_.front()->reply + "\r\n");
+        last_reply_ = now_;
+    }
 }
 
 /// What was not sent to the controller yet will not be, or is checked anew.
@@ -276,6 +280,13 @@ bool Gate::handle_own_command(const LinePointer& line) {
                                          + " does not pass. Change settings, and run files of "
                                            "the controller, without the gate.")
                    + "\r\nerror:3");
+        return true;
+    }
+    // A program must not say it: its lines come at once after the reply before.
+    if (!line->is_after_pause) {
+        answer(line, grbl_message("Feeler: " + line->text
+                                  + " counts when nothing was sent for a second before it.")
+                         + "\r\nerror:3");
         return true;
     }
     // The check hears it when the machine stands still, and then the control is asked.

@@ -47,7 +47,8 @@ private:
         std::string text; // as Grbl reads it
         GrblLine kind = GrblLine::empty;
         Stage stage = Stage::waiting;
-        uint64_t number = 0; // of those that were checked
+        bool is_after_pause = false; // the sender had been quiet
+        uint64_t number = 0;         // of those that were checked
         LineVerdict verdict{};
         std::string reply{}; // once it is answered, without its line end
     };
@@ -127,7 +128,8 @@ private:
     uint64_t last_number_ = 0, made_through_ = 0, followed_ = 0, answered_through_ = 0,
              last_code_ = 0, cancelled_through_ = 0; // of jogs
     std::deque<uint64_t> in_planner_;                // lines that may still be in the planner
-    int64_t now_ = 0, last_answer_ = 0, last_sent_ = 0, asked_status_ = 0, last_refusal_ = 0; // ms
+    int64_t now_ = 0, last_answer_ = 0, last_sent_ = 0, asked_status_ = 0, last_refusal_ = 0,
+            last_reply_ = 0; // ms
     uint64_t passed_ = 0, refused_ = 0;
 };
 

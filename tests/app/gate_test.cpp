@@ -398,6 +398,11 @@ protected:
         play_controller();
         at_sender_.clear();
     }
+    /// As an operator, who takes a moment.
+    void say(const std::string& text) {
+        gate_.tick(time_ += 1500);
+        send(text);
+    }
     void send(const std::string& text) {
         gate_.from_sender(text);
         play_controller();
@@ -584,7 +589,8 @@ TEST_F(GatedSender, IsToldThatTheControllerWasRestarted) {
     send("G0X9\n");
     EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("was restarted")));
     EXPECT_EQ(at_sender_.back(), "error:9");
-    send("$X\n$FEELER=NEW\n");
+    send("$X\n");
+    say("$FEELER=NEW\n");
     EXPECT_EQ(at_sender_.back(), "ok");
 }
 
@@ -592,15 +598,31 @@ TEST_F(GatedSender, SpeaksToTheOperator) {
     begin();
     for (const char* line : {"$FEELER=T", "$FEELER=T99999999999", "$FEELER=T-1", "$FEELER=T7",
                              "$FEELER=X", "$FEELERS", "$J", "[ESP1]"}) {
-        send(std::string(line) + "\n");
+        say(std::string(line) + "\n");
         EXPECT_EQ(at_sender_.back(), "error:3") << line;
     }
     send("$FEELER\n");
     EXPECT_THAT(at_sender_[at_sender_.size() - 2], HasSubstr("0 lines passed"));
-    send("$FEELER=SETUP\nG0X1\n");
+    say("$FEELER=SETUP\nG0X1\n");
     EXPECT_EQ(at_sender_.back(), "error:9");
-    send("$X\n$FEELER=ZERO\nG0X1\n");
+    send("$X\n");
+    say("$FEELER=ZERO\nG0X1\n");
     EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+/// A program that says them is not heard.
+TEST_F(GatedSender, HearsWordsOnlyAfterAPause) {
+    begin();
+    send("G0X1\n$FEELER=SETUP\n");
+    EXPECT_EQ(at_sender_.back(), "error:3");
+    send("$FEELER=SETUP\n");
+    EXPECT_EQ(at_sender_.back(), "error:3");
+    gate_.from_sender("G0X2\n$FEELER=SETUP\n"); // sent in one go, and answered late
+    gate_.tick(time_ += 5000);
+    play_controller();
+    EXPECT_EQ(at_sender_.back(), "error:3");
+    send("G0X70Z0\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
 }
 
 TEST_F(GatedSender, IsToldOfAControllerThatDoesNotAnswer) {
