@@ -23,6 +23,7 @@ struct GateOptions {
 core::Result<ExitCode> run(const GateOptions& options) {
     FEELER_TRY(LineCheck check, LineCheck::open(options.setup, options.check));
     const auto note = [](const std::string& text) { print_note(text + "\n"); };
+    for (const std::string& assumption : check.assumptions()) note(assumption);
     FEELER_TRY(const GateCounts counts, run_gate(options.ports, check, is_interrupted, note));
     print_note(fmt::format("{} lines passed, {} refused\n", counts.passed, counts.refused));
     return counts.refused == 0 ? ExitCode::clear : ExitCode::findings;

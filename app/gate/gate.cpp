@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <random>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,18 +15,23 @@ namespace {
 constexpr int64_t rest = 250;            // ms without an answer until Idle counts as standing still
 constexpr int64_t asking_interval = 200; // ms between two requests for the status
 constexpr int64_t patience = 2000;       // ms
-constexpr int64_t operators_pause = 1000; // ms
-constexpr size_t longest_line = 1024;     // bytes
-constexpr size_t usual_planner = 15;      // blocks
-constexpr size_t usual_buffer = 128;      // bytes, of Grbl on an Arduino Uno
-constexpr size_t largest_buffer = 1024;   // bytes that are used of a larger one
-constexpr size_t behind_planner = 8;      // blocks that have left the planner and are still made
-constexpr size_t followed_at_once = 16;   // lines whose cuts are followed before the next check
-constexpr int locked_error = 9;           // G-code is locked out
+constexpr double least_travel = 0.01;    // mm
+constexpr size_t longest_line = 1024;    // bytes
+constexpr size_t usual_planner = 15;     // blocks
+constexpr size_t usual_buffer = 128;     // bytes, of Grbl on an Arduino Uno
+constexpr size_t largest_buffer = 1024;  // bytes that are used of a larger one
+constexpr size_t behind_planner = 8;     // blocks that have left the planner and are still made
+constexpr size_t followed_at_once = 16;  // lines whose cuts are followed before the next check
+constexpr int locked_error = 9;          // G-code is locked out
 constexpr std::string_view locked = "error:9";
 constexpr std::string_view how_to_go_on =
     "To go on, unlock ($X) or reset Grbl, when the machine stands still.";
 constexpr std::string_view own_command = "$FEELER";
+
+std::string leave_check_mode() {
+    return grbl_message("Feeler: leave check mode ($C) before you go on.") + "\r\n"
+           + std::string(locked);
+}
 
 std::string error_reply(int number) { return fmt::format("error:{}", number); }
 
@@ -45,6 +51,7 @@ void Gate::sender_came() {
 }
 
 void Gate::sender_left() {
+    if (has_jogged_) act_at_once(jog_cancel);
     from_sender_.clear();
     drop_unsent();
     lines_.clear(); // what was sent is run, and nobody hears of it
@@ -70,6 +77,8 @@ void Gate::act_at_once(char byte) {
     links_.to_controller(std::string_view(&byte, 1));
     if (byte == soft_reset) {
         awaits_reset_ = true;
+        reset_at_ = now_;
+        said_no_answer_ = false;
         from_sender_.clear();
         drop_unsent();
         lines_.clear();
@@ -100,7 +109,6 @@ void Gate::take_line() {
     const bool is_too_long = from_sender_.size() > longest_line;
     line->text = as_grbl_reads(from_sender_);
     line->kind = kind_of(line->text);
-    line->is_after_pause = lines_.empty() && now_ - last_reply_ >= operators_pause;
     from_sender_.clear();
     if (awaits_reset_) return; // Grbl loses it
     lines_.push_back(line);
@@ -115,14 +123,14 @@ void Gate::answer(const LinePointer& line, std::string reply) {
 void Gate::flush_replies() {
     for (; !lines_.empty() && lines_.front()->stage == Stage::answered; lines_.pop_front()) {
         links_.to_sender(lines_.front()->reply + "\r\n");
-        last_reply_ = now_;
     }
 }
 
 /// What was not sent to the controller yet will not be, or is checked anew.
 void Gate::drop_unsent() {
     ++epoch_;
-    is_judging_ = is_heard_ = false;
+    is_judging_ = false;
+    word_.reset();
     if (asking_ == Asking::check) asking_ = Asking::nothing;
     needs_asking_ = true;
     for (const LinePointer& line : lines_)
@@ -184,14 +192,14 @@ bool Gate::handle_motion(const LinePointer& line) {
         return true;
     }
     if (needs_asking_ && is_checking_only_) {
-        answer(line, grbl_message("Feeler: leave check mode ($C) before you go on.") + "\r\n"
-                         + std::string(locked));
+        answer(line, leave_check_mode());
         return true;
     }
     const bool is_jog = line->kind == GrblLine::jog;
     // With a full planner, Grbl would run a waiting jog even after a cancel. Of G-code it does not
     // know before all jogs have ended.
-    const size_t most_jogs = facts_.planner.value_or(usual_planner) / 2;
+    const size_t planner = facts_.planner.value_or(usual_planner);
+    const size_t most_jogs = planner > 3 ? planner - 2 : 1;
     needs_asking_ = needs_asking_ || (is_jog ? jogs_ >= most_jogs : has_jogged_);
     const bool has_unsent = std::any_of(lines_.begin(), lines_.end(), [](const LinePointer& other) {
         return other->stage == Stage::ready;
@@ -246,75 +254,120 @@ void Gate::refuse(const LinePointer& line, const LineVerdict& verdict) {
     latch_ = fmt::format("{} was refused. {}", line->text, how_to_go_on);
 }
 
-/// What an own command of the gate says; empty if it is none.
+namespace {
+
+/// A whole number that is all of a text.
+std::optional<int> whole_number(std::string_view text) {
+    int value = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || value < 0) return {};
+    return value;
+}
+
+/// What an own command of the gate says, without the number behind it; empty if it is none.
 std::optional<OperatorWord> word_in(std::string_view text) {
     using Kind = OperatorWord::Kind;
     if (text == "$FEELER=SETUP") return OperatorWord{Kind::sets_up, {}};
     if (text == "$FEELER=ZERO") return OperatorWord{Kind::zero_is_set, {}};
     if (text == "$FEELER=NEW") return OperatorWord{Kind::new_workpiece, {}};
     constexpr std::string_view change = "$FEELER=T";
-    int tool = 0;
     if (!text.starts_with(change)) return {};
-    const auto read = std::from_chars(text.data() + change.size(), text.data() + text.size(), tool);
-    if (read.ec != std::errc() || read.ptr != text.data() + text.size() || tool < 0) return {};
+    const auto tool = whole_number(text.substr(change.size()));
+    if (!tool) return {};
     return OperatorWord{Kind::sets_up, tool};
 }
 
+std::string meaning_of(const OperatorWord& word) {
+    using Kind = OperatorWord::Kind;
+    if (word.tool)
+        return fmt::format("tool {} is in the spindle, and jogs pass unchecked until $FEELER=ZERO",
+                           *word.tool);
+    switch (word.kind) {
+    case Kind::sets_up:
+        return "jogs pass unchecked until $FEELER=ZERO";
+    case Kind::zero_is_set:
+        return "the zero is set, and the work is where the set-up says";
+    case Kind::new_workpiece:
+        return "a new workpiece is in its place, and the zero is set";
+    }
+    return {};
+}
+
+/// A number that nobody can know before.
+int drawn_number() {
+    std::random_device source;
+    return std::uniform_int_distribution<int>(100, 999)(source);
+}
+
+} // namespace
+
 /// Whether there may be more to do.
 bool Gate::handle_own_command(const LinePointer& line) {
-    const auto word = word_in(line->text);
-    if (line->text == own_command) {
-        say(fmt::format("{} lines passed, {} refused. {}", passed_, refused_,
-                        is_latched_     ? latch_
-                        : said_.empty() ? "Motions are checked."
-                                        : said_));
+    const std::string_view text = line->text;
+    if (text == own_command) {
+        const std::string state = is_latched_     ? latch_
+                                  : said_.empty() ? "Motions are checked."
+                                                  : said_;
+        say(fmt::format("{} lines passed, {} refused. {}", passed_, refused_, state));
         answer(line, "ok");
         return true;
     }
-    if (!word) {
-        const bool is_own = line->text.starts_with(own_command);
-        answer(line,
-               grbl_message(is_own ? "Feeler: its commands are $FEELER, $FEELER=SETUP, "
-                                     "$FEELER=T2 (and any tool), $FEELER=ZERO and $FEELER=NEW."
-                                   : "Feeler: " + line->text
-                                         + " does not pass. Change settings, and run files of "
-                                           "the controller, without the gate.")
-                   + "\r\nerror:3");
+    const size_t dash = text.find('-');
+    const auto word = word_in(text.substr(0, dash));
+    const auto refuse_it = [&](const std::string& why) {
+        answer(line, grbl_message("Feeler: " + why) + "\r\nerror:3");
+        return true;
+    };
+    if (!text.starts_with(own_command))
+        return refuse_it(
+            line->text
+            + " does not pass. Change settings, and run files of the controller, without "
+              "the gate.");
+    if (!word)
+        return refuse_it("its commands are $FEELER, $FEELER=SETUP, $FEELER=T2 (and other tools), "
+                         "$FEELER=ZERO and $FEELER=NEW.");
+    if (is_checking_only_) {
+        answer(line, leave_check_mode());
         return true;
     }
-    // A program must not say it: its lines come at once after the reply before.
-    if (!line->is_after_pause) {
-        answer(line, grbl_message("Feeler: " + line->text
-                                  + " counts when nothing was sent for a second before it.")
-                         + "\r\nerror:3");
+    // A program must not be able to say it.
+    if (dash == std::string_view::npos) {
+        asked_word_ = line->text;
+        word_number_ = drawn_number();
+        say(fmt::format("send {}-{} if {}", line->text, word_number_, meaning_of(*word)));
+        answer(line, "ok");
         return true;
     }
-    // The check hears it when the machine stands still, and then the control is asked.
-    if (!is_heard_) {
-        is_heard_ = true;
-        needs_asking_ = true;
-        is_judging_ = true;
-        const auto problem = std::make_shared<std::string>();
-        links_.run([problem, word = *word](LineCheck& check) { *problem = check.hear(word); },
-                   [this, line, problem, epoch = epoch_] {
-                       if (epoch != epoch_) return;
-                       is_judging_ = false;
-                       if (!problem->empty()) {
-                           is_heard_ = false;
-                           answer(line, grbl_message("Feeler: " + *problem) + "\r\nerror:3");
-                       }
-                       go_on();
-                   });
-        return false;
+    if (word_ && !needs_asking_) { // it has taken effect
+        word_.reset();
+        if (said_.empty()) say("the zero is set, and motions are checked");
+        answer(line, "ok");
+        return true;
     }
-    if (needs_asking_) {
+    if (word_) { // it takes effect when the control has been asked
         ask_control();
         return false;
     }
-    is_heard_ = false;
-    if (said_.empty()) say("the zero is set, and motions are checked");
-    answer(line, "ok");
-    return true;
+    const bool is_right = text.substr(0, dash) == std::exchange(asked_word_, {})
+                          && whole_number(text.substr(dash + 1)) == word_number_;
+    if (!is_right)
+        return refuse_it(
+            fmt::format("send {} first, and then the number that it shows.", text.substr(0, dash)));
+    is_judging_ = true;
+    const auto problem = std::make_shared<std::string>();
+    links_.run([problem, word = *word](LineCheck& check) { *problem = check.why_not(word); },
+               [this, line, problem, word, epoch = epoch_] {
+                   if (epoch != epoch_) return;
+                   is_judging_ = false;
+                   if (problem->empty()) {
+                       word_ = word;
+                       needs_asking_ = true;
+                   } else {
+                       answer(line, grbl_message("Feeler: " + *problem) + "\r\nerror:3");
+                   }
+                   go_on();
+               });
+    return false;
 }
 
 /// Sends what may be sent, in order, as far as the controller has room.
@@ -400,6 +453,7 @@ void Gate::take_answer(const std::string& text) {
     answer(line, text);
     if (text == "ok") {
         if (line->kind == GrblLine::unlock || line->kind == GrblLine::home) is_alarmed_ = false;
+        if (line->kind == GrblLine::home) may_be_lost_ = false;
         // Grbl resets itself when it leaves check mode.
         if (line->text == "$C") (is_checking_only_ ? awaits_reset_ : is_checking_only_) = true;
         if (was_checked) {
@@ -430,11 +484,13 @@ void Gate::note_made(const LinePointer& line) {
     if (is_checking_only_ || is_alarmed_ || is_derailed_ || awaits_reset_) return;
     // Grbl takes jogs when all other motions have ended.
     if (line->kind == GrblLine::jog) {
+        has_moved_ = true;
         made_through_ = std::max(made_through_, last_code_);
         if (line->number <= cancelled_through_) return;
         ++jogs_;
     }
     answered_through_ = line->number;
+    has_moved_ = has_moved_ || line->verdict.moves;
     if (line->kind == GrblLine::code) last_code_ = line->number;
     // Grbl waits until all motions before have ended.
     if (line->verdict.stops_at_contact || (line->text.starts_with("G4P") && !line->verdict.moves)) {
@@ -456,12 +512,14 @@ void Gate::take_status(const GrblStatus& status) {
         in_planner_.clear();
         jogs_ = 0;
     }
-    if (status.mpos && !may_be_lost_) was_at_ = *status.mpos;
-    if (is_idle && stands && std::exchange(greets_, false) && !banner_.empty())
+    const bool is_at_rest = is_idle || status.state == "Alarm" || status.state == "Check";
+    if (is_at_rest && stands && std::exchange(greets_, false) && !banner_.empty())
         links_.to_sender(banner_ + "\r\n");
     // It stands, and has not answered.
-    if (is_idle && !outstanding_.empty() && now_ - last_sent_ >= patience
-        && now_ - last_answer_ >= patience && !std::exchange(said_no_answer_, true))
+    const bool awaits_plain =
+        !outstanding_.empty() && outstanding_.front().line && is_plain(*outstanding_.front().line);
+    if (is_idle && awaits_plain && now_ - last_sent_ >= patience && now_ - last_answer_ >= patience
+        && !std::exchange(said_no_answer_, true))
         say("the controller does not answer. Reset Grbl to go on.");
     if (asking_ != Asking::status || !stands) return;
     if (status.state == "Alarm" || status.state == "Sleep") {
@@ -469,6 +527,7 @@ void Gate::take_status(const GrblStatus& status) {
         return lock_waiting(); // as Grbl does
     }
     if (status.state == "Check") {
+        is_checking_only_ = true;
         // Nothing moves, and Grbl answers no questions.
         asking_ = Asking::nothing;
         if (knows_settings_) needs_asking_ = has_jogged_ = false;
@@ -498,8 +557,7 @@ void Gate::take_reset() {
     from_sender_.clear();
     answered_through_ = made_through_; // motions may have been cut off
     asking_ = Asking::nothing;
-    // A restart that nobody has asked for: the machine has not moved, and says that it is at zero.
-    may_be_lost_ = may_be_lost_ || (!awaits_reset_ && knows_settings_);
+    may_be_lost_ = true;
     was_dry_ = is_checking_only_;
     jogs_ = 0;
     cancels_again_ = false;
@@ -535,7 +593,7 @@ void Gate::lock_waiting() {
             && (line->kind == GrblLine::code || line->kind == GrblLine::jog
                 || line->kind == GrblLine::other))
             answer(line, std::string(locked));
-    is_heard_ = false;
+    word_.reset();
 }
 
 void Gate::ask_next_fact() {
@@ -558,17 +616,21 @@ void Gate::take_facts() {
     facts_ = asked_;
     facts_.is_reset = std::exchange(was_reset_, false);
     facts_.is_dry = std::exchange(was_dry_, false);
-    facts_.is_lost = std::exchange(may_be_lost_, false) && !position_is_of_work_
-                     && position_ == core::Vec3(0.0) && was_at_ != position_;
     knows_settings_ = true;
     core::Vec3 position = facts_.scaled(position_);
     if (position_is_of_work_)
         position += facts_.zero() + core::Vec3(0.0, 0.0, facts_.length_offset);
+    // A board that starts takes its place for zero.
+    facts_.is_lost = std::exchange(may_be_lost_, false) && glm::length(position) < least_travel
+                     && (!was_asked_ || has_moved_ || glm::length(was_at_) >= least_travel);
+    was_asked_ = true;
+    was_at_ = position;
+    has_moved_ = false;
     asking_ = Asking::check;
     const auto problem = std::make_shared<std::string>();
     links_.run(
-        [problem, facts = facts_, position, made = made_through_](LineCheck& check) {
-            const auto done = check.synchronise(facts, position, made);
+        [problem, facts = facts_, position, made = made_through_, word = word_](LineCheck& check) {
+            const auto done = check.synchronise(facts, position, made, word);
             *problem = done ? check.objection() : done.error().message;
         },
         [this, problem, epoch = epoch_] {
@@ -604,6 +666,8 @@ void Gate::tick(int64_t now) {
         asked_status_ = now_;
         links_.to_controller(std::string_view(&status_request, 1));
     }
+    if (awaits_reset_ && now_ - reset_at_ >= patience && !std::exchange(said_no_answer_, true))
+        say("the controller does not answer after the reset");
     // Says early what is wrong.
     if (!knows_settings_ && now_ - asked_status_ >= patience) ask_control();
     go_on();

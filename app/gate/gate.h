@@ -47,8 +47,7 @@ private:
         std::string text; // as Grbl reads it
         GrblLine kind = GrblLine::empty;
         Stage stage = Stage::waiting;
-        bool is_after_pause = false; // the sender had been quiet
-        uint64_t number = 0;         // of those that were checked
+        uint64_t number = 0; // of those that were checked
         LineVerdict verdict{};
         std::string reply{}; // once it is answered, without its line end
     };
@@ -104,11 +103,15 @@ private:
     bool has_jogged_ = false;  // Grbl takes no G-code until the jogs have ended
     bool knows_settings_ = false, was_reset_ = false;
     bool may_be_lost_ = false;            // where the machine is, by a restart
-    core::Vec3 was_at_ = core::Vec3(0.0); // as reported, before it
-    bool was_dry_ = false;                // it was in check mode
-    bool is_heard_ = false;               // a word of the operator, and not answered yet
-    bool cancels_again_ = false;          // when a jog that is on its way is answered
-    bool greets_ = false;                 // a new sender
+    core::Vec3 was_at_ = core::Vec3(0.0); // when it was asked last, mm
+    bool was_asked_ = false;
+    bool has_moved_ = false; // since then
+    bool was_dry_ = false;   // it was in check mode
+    std::string asked_word_; // of the operator, to be said again with a number
+    int word_number_ = 0;
+    std::optional<OperatorWord> word_; // takes effect when the control has been asked
+    bool cancels_again_ = false;       // when a jog that is on its way is answered
+    bool greets_ = false;              // a new sender
     bool said_no_answer_ = false;
     std::string latch_; // why nothing passes
     size_t jogs_ = 0;   // that may still be in the planner
@@ -129,7 +132,7 @@ private:
              last_code_ = 0, cancelled_through_ = 0; // of jogs
     std::deque<uint64_t> in_planner_;                // lines that may still be in the planner
     int64_t now_ = 0, last_answer_ = 0, last_sent_ = 0, asked_status_ = 0, last_refusal_ = 0,
-            last_reply_ = 0; // ms
+            last_reply_ = 0, reset_at_ = 0; // ms
     uint64_t passed_ = 0, refused_ = 0;
 };
 

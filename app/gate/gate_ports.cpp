@@ -126,6 +126,7 @@ private:
     template <typename Port>
     void take_sender(const std::shared_ptr<StreamOf<Port>>& sender);
     void look_at_terminal();
+    void empty_terminal();
     void tick();
     void close_terminal();
 
@@ -137,8 +138,9 @@ private:
     asio::steady_timer timer_{io_};
     std::optional<asio::ip::tcp::acceptor> acceptor_;
     std::shared_ptr<Stream> controller_, sender_;
-    int terminal_ = -1; // our end
-    std::string link_, failed_;
+    int terminal_ = -1;             // our end
+    bool is_terminal_used_ = false; // by the sender
+    std::string link_, terminal_name_, failed_;
     Gate gate_;
 };
 
@@ -233,6 +235,7 @@ void GateServer::accept() {
             asio::write(socket, asio::buffer(text), ignored);
         } else {
             socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+            socket.set_option(asio::socket_base::keep_alive(true), ignored);
             take_sender(stream_of(std::move(socket)));
         }
         accept();
@@ -247,6 +250,7 @@ void GateServer::take_sender(const std::shared_ptr<StreamOf<Port>>& sender) {
         note_("the sender is gone");
         sender_.reset();
         gate_.sender_left();
+        if (is_terminal_used_) empty_terminal();
     };
     note_("a sender is connected");
     gate_.sender_came();
@@ -260,6 +264,7 @@ core::Result<void> GateServer::open_terminal(const std::string&) {
 }
 
 void GateServer::look_at_terminal() {}
+void GateServer::empty_terminal() {}
 void GateServer::close_terminal() {}
 #else
 core::Result<void> GateServer::open_terminal(const std::string& link) {
@@ -277,20 +282,42 @@ core::Result<void> GateServer::open_terminal(const std::string& link) {
     std::filesystem::create_symlink(name, link, error);
     if (error) return not_open(link, error);
     link_ = link;
+    terminal_name_ = name;
     note_(fmt::format("the sender opens {} ({})", link, name));
     return {};
 }
 
-/// Takes a sender that has opened the terminal.
+/// Takes a sender that has opened the terminal. Of all others, only what acts at once counts, such
+/// as a feed hold.
 void GateServer::look_at_terminal() {
     pollfd state{terminal_, POLLIN, 0};
-    if (terminal_ < 0 || sender_ || ::poll(&state, 1, 0) < 0) return;
+    if (terminal_ < 0 || is_terminal_used_ || ::poll(&state, 1, 0) < 0) return;
+    const bool is_closed = (state.revents & POLLHUP) != 0;
+    if (is_closed || sender_) {
+        std::array<char, 256> bytes{};
+        const ssize_t count =
+            (state.revents & POLLIN) != 0 ? ::read(terminal_, bytes.data(), bytes.size()) : 0;
+        for (ssize_t i = 0; i < count && !is_closed; ++i)
+            if (const char byte = bytes[static_cast<size_t>(i)]; acts_at_once(byte))
+                gate_.from_sender({&byte, 1});
+        return;
+    }
     termios settings{};
-    if ((state.revents & POLLHUP) != 0 || ::tcgetattr(terminal_, &settings) != 0) return;
+    if (::tcgetattr(terminal_, &settings) != 0) return;
     ::cfmakeraw(&settings); // otherwise what the gate writes comes back
     ::tcsetattr(terminal_, TCSANOW, &settings);
     asio::posix::stream_descriptor port(io_, ::dup(terminal_));
+    is_terminal_used_ = true;
     take_sender(stream_of(std::move(port)));
+}
+
+/// Drops what the last sender has not read.
+void GateServer::empty_terminal() {
+    is_terminal_used_ = false;
+    const int other_end = ::open(terminal_name_.c_str(), O_RDWR | O_NOCTTY);
+    if (other_end < 0) return;
+    ::tcflush(other_end, TCIOFLUSH);
+    ::close(other_end);
 }
 
 void GateServer::close_terminal() {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -28,6 +29,7 @@ namespace {
 
 constexpr std::string_view who = "the gate";
 constexpr size_t offset_count = 6;        // G54 to G59
+constexpr double most_correction = 0.2;   // of Z after the first cut, mm
 constexpr double most_arc_error = 0.02;   // mm
 constexpr double least_difference = 5e-4; // of numbers, mm or inches
 
@@ -190,6 +192,20 @@ bool has_arc(const std::vector<core::Event>& events) {
     });
 }
 
+/// Whether an arc ends so near to its start that Grbl, with its single floats, may take it for a
+/// full circle or a full circle for it.
+bool is_doubtful_arc(const core::Event& event) {
+    constexpr double least_angle = 1e-5;
+    const core::Motion* const motion = motion_in(event);
+    if (!motion || !motion->arc) return false;
+    const auto moves_along = [&](int by) {
+        const auto axis = static_cast<size_t>((motion->arc->normal + by) % 3);
+        return motion->from[axis] != motion->to[axis];
+    };
+    const double angle = std::remainder(motion->arc->angle, 2.0 * std::numbers::pi);
+    return std::abs(angle) < least_angle && (moves_along(1) || moves_along(2));
+}
+
 bool is_straight_up(const core::Motion& motion) {
     return !motion.arc && motion.from[0] == motion.to[0] && motion.from[1] == motion.to[1]
            && *motion.to[2] >= *motion.from[2];
@@ -201,6 +217,14 @@ void lower_by(core::Event& event, double z) {
     *motion->from[2] -= z;
     *motion->to[2] -= z;
     if (motion->arc) motion->arc->centre.z -= z;
+}
+
+/// Whether two places are the same but for what a controller rounds in its reports.
+bool is_near(const core::AxisPosition& a, const core::AxisPosition& b) {
+    constexpr double rounding = 0.05; // mm
+    for (size_t i = 0; i < 3; ++i)
+        if (!a[i] || !b[i] || !(std::abs(*a[i] - *b[i]) <= rounding)) return false;
+    return true;
 }
 
 std::string number(double value) { return fmt::format("{:.3f}", value); }
@@ -218,7 +242,7 @@ core::Result<LineCheck> LineCheck::open(const std::string& setup, const Options&
     check.text_ = text.str();
     check.takes_offsets_ = file.infers_frame;
     check.is_set_up_ = !check.takes_offsets_;
-    if (options.zero_is_set) check.word_ = OperatorWord{OperatorWord::Kind::zero_is_set, {}};
+    check.zero_is_set_ = options.zero_is_set;
     if (file.dialect && *file.dialect != gcode::DialectId::grbl)
         return core::fail_file(setup, fmt::format("the gate is for Grbl, and the set-up is for {}",
                                                   gcode::dialect(*file.dialect).name));
@@ -228,6 +252,11 @@ core::Result<LineCheck> LineCheck::open(const std::string& setup, const Options&
     }
     if (std::string why = why_incomplete(file, who); !why.empty())
         return core::fail_file(setup, std::move(why));
+    if (file.loses_machine)
+        return core::fail_file(setup,
+                               "has tools of different lengths that are touched off, so where "
+                               "its machine bodies are is not known: state the lengths (G43.1), "
+                               "or leave the bodies out");
     if (file.setup.machine.has_rotary())
         return core::fail_file(setup, "Grbl has no rotary axes, and the set-up's machine has");
     const auto& tools = file.setup.tools;
@@ -248,14 +277,18 @@ core::Result<LineCheck> LineCheck::open(const std::string& setup, const Options&
     if (auto notes = apply(file.control, check.environment_, file.setup.machine); !notes)
         return tl::unexpected(core::in_file(notes.error(), setup));
     file.setup.machine.rapid = core::RapidStyle::straight;
+    // The control says where it starts, and where its reference points are.
+    std::erase_if(file.assumptions, [&](const std::string& assumption) {
+        return assumption == file.start_assumption
+               || assumption.find("home position") != std::string::npos;
+    });
     check.file_ = std::move(file);
     return check;
 }
 
-std::string LineCheck::hear(const OperatorWord& word) {
+std::string LineCheck::why_not(const OperatorWord& word) const {
     if (word.tool && !file_->setup.tools.contains(core::ToolNumber{*word.tool}))
         return fmt::format("The set-up does not describe tool {}.", *word.tool);
-    word_ = word;
     return {};
 }
 
@@ -267,7 +300,7 @@ core::Result<void> LineCheck::build(const GrblFacts& facts) {
         file.setup.machine.rapid = core::RapidStyle::straight;
         file_ = std::move(file);
     }
-    shift_ = 0.0;
+    shift_ = shift_of_tool_ = 0.0;
     judge_.emplace(file_->setup);
     FEELER_TRY(core::SimulatorState state, core::start_of_run(judge_->setup(), {}));
     state.is_assumed = {};
@@ -295,10 +328,9 @@ bool LineCheck::use_shift(double z) {
 }
 
 /// The operator says that the work lies at the zero of the control.
-core::Result<void> LineCheck::take_zero(const GrblFacts& facts) {
-    const bool is_new = word_->kind == OperatorWord::Kind::new_workpiece;
+core::Result<void> LineCheck::take_zero(const GrblFacts& facts, bool is_new_workpiece) {
     is_set_up_ = true;
-    if (!made_ || is_new) return build(facts);
+    if (!made_ || is_new_workpiece) return build(facts);
     if (!takes_offsets_) return {}; // compared with the set-up's
     const gcode::AxisValues known = file_->environment.work_offset(*facts.active());
     core::Vec3 by = facts.zero();
@@ -307,12 +339,17 @@ core::Result<void> LineCheck::take_zero(const GrblFacts& facts) {
     const bool is_above = std::abs(by.z - shift_) > tolerance_;
     if (!is_beside && !is_above) return {};
     if (!has_cut_) return build(facts);
-    if (!is_beside && tool_was_changed_ && use_shift(by.z)) return {};
+    if (!is_beside && tool_was_changed_ && use_shift(by.z)) {
+        shift_of_tool_ = shift_;
+        return {};
+    }
+    const bool is_correction = std::abs(by.z - shift_of_tool_) <= most_correction;
+    if (!is_beside && is_correction && use_shift(by.z)) return {};
     is_set_up_ = false;
-    problem_ =
-        fmt::format("The zero has moved by X{} Y{} Z{} mm since the stock was cut. If there is a "
-                    "new workpiece, send $FEELER=NEW.",
-                    number(by.x), number(by.y), number(by.z - shift_));
+    problem_ = fmt::format(
+        "The zero has moved by X{} Y{} Z{} mm since the stock was cut. {}If there is a "
+        "new workpiece, send $FEELER=NEW.",
+        number(by.x), number(by.y), number(by.z - shift_), is_beside ? "" : tool_note());
     return {};
 }
 
@@ -360,8 +397,9 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
     lowering_ = gcode::initial_lowering(control_);
     if (file_->speed_by_hand && spindle.direction != core::SpindleDirection::stopped)
         spindle.speed = std::max(spindle.speed, 1.0);
+    if (facts.is_reset) programs_spindle_ = false;
     // A spindle that is switched by hand.
-    if (spindle.direction == core::SpindleDirection::stopped
+    if (!programs_spindle_ && spindle.direction == core::SpindleDirection::stopped
         && file_->setup.spindle_at_start != core::SpindleDirection::stopped)
         spindle = {file_->setup.spindle_at_start, 1.0};
     step_ = facts.step;
@@ -370,42 +408,49 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
 }
 
 core::Result<void> LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
-                                          uint64_t made_through) {
+                                          uint64_t made_through,
+                                          const std::optional<OperatorWord>& word) {
+    using Kind = OperatorWord::Kind;
     if (judge_) follow(made_through, waiting_.size());
     // A part of the others may have been made, but not in check mode.
     has_cut_ = has_cut_ || (made_ && made_->stock.log.size() > 0) || (!facts.is_dry && cuts() > 0);
+    const core::AxisPosition before = ahead_ ? ahead_->position : core::AxisPosition();
     waiting_.clear();
     ahead_.reset();
     problem_.clear();
-    if (facts.is_lost) is_set_up_ = false;
+    const bool says_zero = (word && word->kind != Kind::sets_up)
+                           || (std::exchange(zero_is_set_, false) && !facts.is_lost);
+    if (facts.is_lost || (word && word->kind == Kind::sets_up)) is_set_up_ = false;
+    if (word && word->tool) {
+        tool_ = core::ToolNumber{*word->tool};
+        tool_was_changed_ = true;
+        called_.reset();
+    }
     if (!facts.active())
         problem_ = "The control does not say which work offset it uses.";
     else if (!facts.stored_line.empty())
         problem_ = fmt::format("Grbl runs the stored line {} at each reset, and nobody checks it: "
                                "clear it ($N0= and $N1=) without the gate.",
                                facts.stored_line);
-    else if (word_ && word_->kind != OperatorWord::Kind::sets_up)
-        if (auto taken = take_zero(facts); !taken) return taken;
-    if (word_ && word_->kind == OperatorWord::Kind::sets_up) is_set_up_ = false;
-    if (word_ && word_->tool) {
-        tool_ = core::ToolNumber{*word_->tool};
-        called_.reset();
-    }
-    tool_was_changed_ = !is_set_up_ && (tool_was_changed_ || (word_ && word_->tool));
-    word_.reset();
+    else if (says_zero)
+        if (auto taken = take_zero(facts, word && word->kind == Kind::new_workpiece); !taken)
+            return taken;
+    if (is_set_up_) tool_was_changed_ = false;
     if (is_set_up_ && !made_)
         if (auto built = build(facts); !built) return built;
-    if (facts.is_lost)
+    if (facts.is_lost && !says_zero)
         problem_ =
             "The controller was restarted, and takes its place for zero. Home it, or touch off.";
     take_modes(facts, position);
     knows_control_ = true;
     if (!is_set_up_) return {};
-    put_at(*made_, position_at(position - core::Vec3(0.0, 0.0, shift_)));
+    const core::AxisPosition here = position_at(position - core::Vec3(0.0, 0.0, shift_));
+    // Otherwise an end of a retreat is no new beginning.
+    if (!is_near(before, here)) judge_->begin_retreat();
+    put_at(*made_, here);
     made_->tool = tool_;
     made_->spindle = spindle_;
     ahead_ = *made_;
-    judge_->begin_retreat();
     may_retreat_ = true;
     return {};
 }
@@ -414,12 +459,21 @@ std::string LineCheck::objection() const {
     constexpr const char* to_confirm =
         "Jogs, probing and motions straight up pass unchecked, and no others, until you send "
         "$FEELER=ZERO: the zero is set, and the work is where the set-up says.";
-    if (is_set_up_) return objection(lowering_.offsets);
+    if (is_set_up_) return objection(lowering_.offsets, called_);
     return problem_.empty() ? to_confirm : problem_ + " " + to_confirm;
 }
 
+/// What to say where the tool may be another one.
+std::string LineCheck::tool_note() const {
+    return fmt::format(
+        "If another tool was touched off, send $FEELER=T and its number first; tool {} "
+        "is taken to be in the spindle. ",
+        core::value_of(*tool_));
+}
+
 /// Why no motion may be made with these offsets; empty if there is no reason.
-std::string LineCheck::objection(const gcode::Offsets& offsets) const {
+std::string LineCheck::objection(const gcode::Offsets& offsets,
+                                 std::optional<core::ToolNumber> called) const {
     if (!problem_.empty()) return problem_;
     const std::string name = gcode::name_of_offset(offsets.active);
     if (takes_offsets_ && name != file_->stock_frame)
@@ -435,9 +489,9 @@ std::string LineCheck::objection(const gcode::Offsets& offsets) const {
         const double expected = stated[axis] + (axis == 2 ? shift_ : 0.0);
         if (std::abs(zero - expected) <= tolerance_) continue;
         const std::string there =
-            takes_offsets_ ? fmt::format("was {} when the zero was set (mm). If the work "
+            takes_offsets_ ? fmt::format("was {} when the zero was set (mm). {}If the work "
                                          "lies there now, send $FEELER=ZERO.",
-                                         number(expected))
+                                         number(expected), tool_note())
                            : fmt::format("{} in the set-up (mm).", number(expected));
         return fmt::format("{}{} {} is {} on the control and {}", name,
                            offsets.axis[axis].value_or(0.0) != 0.0 ? " with G92" : "",
@@ -449,11 +503,11 @@ std::string LineCheck::objection(const gcode::Offsets& offsets) const {
             "The length of tool {} is {} on the control (G43.1) and {} in the set-up "
             "(mm). A tool that is touched off has touched_off = 0 there.",
             core::value_of(*tool_), number(offsets.tool[2]), number(tool.length));
-    if (called_ && *called_ != *tool_)
+    if (called && *called != *tool_)
         return fmt::format(
             "The program calls tool {0}, and tool {1} is in the spindle. Change the tool, send "
             "$FEELER=T{0}, touch off, and send $FEELER=ZERO.",
-            core::value_of(*called_), core::value_of(*tool_));
+            core::value_of(*called), core::value_of(*tool_));
     return {};
 }
 
@@ -469,7 +523,7 @@ LineVerdict LineCheck::judge_unchecked(LineVerdict verdict, const std::vector<co
     const bool goes_up = std::all_of(events.begin(), events.end(), [](const core::Event& event) {
         return !moves(event) || is_straight_up(*motion_in(event));
     });
-    verdict.asks_anew = !is_jog;
+    verdict.asks_anew = verdict.asks_anew || (verdict.moves && !is_jog);
     verdict.answer.may_move = !verdict.moves || is_jog || verdict.stops_at_contact || goes_up;
     if (!verdict.answer.may_move) verdict.answer.reason = objection();
     return verdict;
@@ -481,8 +535,14 @@ LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Even
         if (!verdict.answer.reason.empty()) return verdict;
     }
     verdict.answer = judge_->judge(events, *ahead_);
+    if (shift_ != 0.0 && verdict.answer.reason.find("machine coordinates") != std::string::npos)
+        verdict.answer.reason +=
+            fmt::format(" (Here Z is {} less than on the control, by the length of "
+                        "the tool.)",
+                        number(shift_));
     if (verdict.answer.may_move) {
         may_retreat_ = false;
+        judge_->begin_retreat();
         return verdict;
     }
     rewind();
@@ -500,6 +560,9 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
     // Grbl makes such a jog to machine zero.
     if (is_jog && text.find_first_of("XYZ") == std::string::npos)
         return not_understood("It has no axis.", 26);
+    constexpr size_t longest = 79; // what Grbl stores
+    if (text.size() > longest)
+        return not_understood(fmt::format("It has more than {} characters.", longest), 11);
     const auto words = words_of(is_jog ? text.substr(3) : text);
     if (!words)
         return not_understood("It does not consist of letters with numbers.",
@@ -510,6 +573,10 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
                 fmt::format("Grbl takes eight digits of a number, so it reads {}{}.", word.letter,
                             word.value),
                 2);
+    constexpr double last_tool = 255; // of Grbl
+    for (const GrblWord& word : *words)
+        if (word.letter == 'T' && word.value > last_tool)
+            return not_understood(fmt::format("Grbl has no tool {}.", word.value), 38);
     if (const auto code = refused_machine_code(*words))
         return not_understood(fmt::format("Grbl has no M{}.", *code), 20);
     const std::string line = is_jog ? "G1G94" + text.substr(3) : text;
@@ -562,14 +629,15 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
             return motion_in(event) && motion_in(event)->stops_at_contact;
         });
     verdict.asks_anew = verdict.asks_anew || verdict.stops_at_contact;
-    const auto called = control.modal.selected_tool;
-    if (called) called_ = called;
+    const auto called = control.modal.selected_tool ? control.modal.selected_tool : called_;
     if (!is_set_up_) {
         verdict = judge_unchecked(std::move(verdict), events, is_jog);
         // Behind motions the control is asked anew.
         if (verdict.answer.may_move && !verdict.moves) control_ = std::move(control);
         return verdict;
     }
+    if (std::any_of(events.begin(), events.end(), is_doubtful_arc))
+        return not_understood("This arc is so flat that Grbl may make a full circle of it.", 9);
     if (verdict.moves && has_arc(events) && arc_error_ > most_arc_error)
         return not_understood(
             fmt::format("Grbl makes arcs with chords up to {:.3g} mm off ($12): set "
@@ -577,7 +645,7 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
                         arc_error_, most_arc_error),
             9);
     if (verdict.moves) {
-        if (std::string why = objection(lowering.offsets); !why.empty())
+        if (std::string why = objection(lowering.offsets, called); !why.empty())
             return not_understood(std::move(why), 9);
         verdict.answer.may_move = false;
         verdict = judge_motions(std::move(verdict), events);
@@ -594,6 +662,9 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
         control_ = std::move(control);
         lowering_ = lowering;
     }
+    called_ = called;
+    for (const core::Event& event : events)
+        programs_spindle_ = programs_spindle_ || std::holds_alternative<core::SpindleChange>(event);
     waiting_.push_back({number, std::move(events)});
     return verdict;
 }

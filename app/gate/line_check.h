@@ -27,7 +27,7 @@ struct LineVerdict {
     bool asks_anew = false;        // what is known of the control does not hold behind it
 };
 
-/// What the operator says while nothing moves.
+/// What the operator says while nothing moves; takes effect with synchronise.
 struct OperatorWord {
     enum class Kind : uint8_t { sets_up, zero_is_set, new_workpiece } kind = Kind::sets_up;
     std::optional<int> tool{}; // that is in the spindle now; with `sets_up`
@@ -57,7 +57,8 @@ public:
     ///
     /// Errors: why the stock cannot be modelled, or the set-up cannot be read any more.
     core::Result<void> synchronise(const GrblFacts& facts, const core::Vec3& position,
-                                   uint64_t made_through);
+                                   uint64_t made_through,
+                                   const std::optional<OperatorWord>& word = {});
 
     /// Checks a line that Grbl has read (as_grbl_reads): G-code, or $J= with `is_jog`. Those that
     /// may be sent are taken to be run after the ones before, in the order of their numbers.
@@ -69,9 +70,11 @@ public:
     /// Whether some are left.
     bool follow(uint64_t made_through, size_t most);
 
-    /// Takes effect with the next synchronise. Why it is not possible; empty if it is.
-    std::string hear(const OperatorWord& word);
+    /// Why the operator's word cannot be true; empty if it can.
+    std::string why_not(const OperatorWord& word) const;
 
+    /// What the set-up does not state.
+    const std::vector<std::string>& assumptions() const { return file_->assumptions; }
     /// Why no motion may be made now; empty if there is no reason.
     std::string objection() const;
     /// Whether the place of the bodies is known.
@@ -84,14 +87,16 @@ private:
     };
 
     LineCheck() = default;
-    core::Result<void> take_zero(const GrblFacts& facts);
+    core::Result<void> take_zero(const GrblFacts& facts, bool is_new_workpiece);
     core::Result<void> build(const GrblFacts& facts);
     bool use_shift(double z);
     void take_modes(const GrblFacts& facts, const core::Vec3& position);
-    std::string objection(const gcode::Offsets& offsets) const;
+    std::string objection(const gcode::Offsets& offsets,
+                          std::optional<core::ToolNumber> called) const;
     LineVerdict judge_unchecked(LineVerdict verdict, const std::vector<core::Event>& events,
                                 bool is_jog) const;
     LineVerdict judge_motions(LineVerdict verdict, std::vector<core::Event> events);
+    std::string tool_note() const;
     void rewind();
     size_t cuts() const;
 
@@ -110,11 +115,14 @@ private:
     std::optional<core::ToolNumber> tool_, called_; // in the spindle; by T
     core::Vec3 step_ = core::Vec3(0.0);             // of the axes, mm; 0: not known
     double arc_error_ = 0.0;                        // how far Grbl's chords are from an arc, mm
-    double shift_ = 0.0; // mm: Z of the control minus that of the bodies, since a tool change
-    std::optional<OperatorWord> word_;                  // not in effect yet
+    // mm: Z of the control minus that of the bodies, since a tool was changed or the zero was
+    // corrected; at the last tool change.
+    double shift_ = 0.0, shift_of_tool_ = 0.0;
+    bool zero_is_set_ = false;                          // before anybody was asked
     bool is_set_up_ = false, tool_was_changed_ = false; // since the zero was set
     bool has_cut_ = false, may_retreat_ = false, knows_control_ = false;
-    std::string problem_; // why nothing may move: found when the control was asked
+    bool programs_spindle_ = false; // since the reset, M3 to M5 switch it
+    std::string problem_;           // why nothing may move: found when the control was asked
 };
 
 } // namespace app

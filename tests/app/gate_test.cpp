@@ -273,15 +273,15 @@ TEST_F(CheckedLines, AreUncheckedAndFewBeforeTheZeroIsSet) {
     EXPECT_TRUE(passes("G10L20P1X5"));
     EXPECT_THAT(judge("G0X1").answer.reason, HasSubstr("$FEELER=ZERO"));
     EXPECT_THAT(judge("G0Z30").answer.reason, HasSubstr("$FEELER=ZERO"));
-    EXPECT_EQ(check_.hear({Kind::zero_is_set, {}}), "");
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), number_));
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), number_,
+                                   app::OperatorWord{Kind::zero_is_set, {}}));
     EXPECT_EQ(check_.objection(), "");
     EXPECT_TRUE(passes("G0X1"));
     EXPECT_FALSE(passes("G0X70Z5"));
-    EXPECT_EQ(check_.hear({Kind::sets_up, {}}), "");
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(1, 0, 40), number_));
+    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(1, 0, 40), number_,
+                                   app::OperatorWord{Kind::sets_up, {}}));
     EXPECT_FALSE(passes("G0X2"));
-    EXPECT_THAT(check_.hear({Kind::sets_up, 5}), HasSubstr("does not describe tool 5"));
+    EXPECT_THAT(check_.why_not({Kind::sets_up, 5}), HasSubstr("does not describe tool 5"));
 }
 
 /// A program cannot move the bodies by setting an offset.
@@ -294,13 +294,21 @@ TEST_F(CheckedLines, DoNotMoveTheBodies) {
     EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_));
     EXPECT_THAT(check_.objection(), HasSubstr("$FEELER=ZERO"));
     EXPECT_FALSE(passes("G0X70"));
-    EXPECT_EQ(check_.hear({app::OperatorWord::Kind::zero_is_set, {}}), "");
-    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_));
+    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_,
+                                   app::OperatorWord{app::OperatorWord::Kind::zero_is_set, {}}));
     EXPECT_TRUE(passes("G0X70"));    // 80 above the clamp's lower end
     EXPECT_FALSE(passes("G0X0Z-1")); // the stock is 40 lower, too
     EXPECT_TRUE(check_.synchronise(facts_at_zero("G0 G55 G17 G21 G90 G94 M3 M9 T0 F500 S1000"),
                                    core::Vec3(0, 0, 40), number_));
     EXPECT_THAT(check_.objection(), HasSubstr("G55 is in use"));
+}
+
+/// Grbl takes them for full circles.
+TEST_F(CheckedLines, AreNoFlatArcs) {
+    EXPECT_FALSE(passes("G2X0.001Y0R2500"));
+    EXPECT_FALSE(passes("G3X10R100000000"));
+    EXPECT_TRUE(passes("G2X1R100"));
+    EXPECT_TRUE(passes("G2X1Y0I1J0")); // a full circle
 }
 
 TEST_F(CheckedLines, NeedFineArcsOfGrbl) {
@@ -309,6 +317,26 @@ TEST_F(CheckedLines, NeedFineArcsOfGrbl) {
     EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), 0));
     EXPECT_TRUE(passes("G1X1"));
     EXPECT_THAT(judge("G2X3R1").answer.reason, HasSubstr("$12"));
+}
+
+/// A spindle that is switched by hand does not turn again after M5.
+TEST_F(CheckedLines, SwitchTheSpindleOff) {
+    check_ = open(bodies + "[program]\nspindle_at_start = \"clockwise\"\n");
+    const auto off = facts_at_zero("G0 G54 G17 G21 G90 G94 M5 M9 T0 F500 S0");
+    EXPECT_TRUE(check_.synchronise(off, core::Vec3(-60, 0, -3), 0));
+    EXPECT_TRUE(passes("G1X-50F100"));
+    EXPECT_TRUE(passes("M5"));
+    EXPECT_TRUE(check_.synchronise(off, core::Vec3(-50, 0, -3), number_));
+    EXPECT_FALSE(passes("G1X-40"));
+}
+
+TEST_F(CheckedLines, KnowOnlyToolsOfGrbl) {
+    EXPECT_EQ(judge("T300").error, 38);
+    EXPECT_TRUE(passes("G0X1"));
+    EXPECT_FALSE(passes("T2X70Z5")); // refused, so it calls nothing
+    EXPECT_TRUE(passes("X2"));
+    EXPECT_TRUE(passes("T2"));
+    EXPECT_THAT(judge("X3").answer.reason, HasSubstr("calls tool 2"));
 }
 
 /// The clearance of many small steps does not add up.
@@ -398,10 +426,13 @@ protected:
         play_controller();
         at_sender_.clear();
     }
-    /// As an operator, who takes a moment.
-    void say(const std::string& text) {
-        gate_.tick(time_ += 1500);
-        send(text);
+    /// As an operator, who reads the number that the gate shows.
+    void say(const std::string& word) {
+        send(word + "\n");
+        for (const std::string& line : std::vector(at_sender_)) {
+            const size_t at = line.find("send " + word + "-");
+            if (at != std::string::npos) send(line.substr(at + 5, word.size() + 4) + "\n");
+        }
     }
     void send(const std::string& text) {
         gate_.from_sender(text);
@@ -557,7 +588,7 @@ TEST_F(GatedSender, NeverFillsThePlannerWithJogs) {
         at_controller_.clear();
         gate_.from_controller("ok\r\n");
     }
-    EXPECT_LE(run_.size(), 2U); // of three blocks
+    EXPECT_LE(run_.size(), 1U); // of three blocks
     state_ = "Idle";
     asked_ = 1;
     play_controller();
@@ -590,7 +621,7 @@ TEST_F(GatedSender, IsToldThatTheControllerWasRestarted) {
     EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("was restarted")));
     EXPECT_EQ(at_sender_.back(), "error:9");
     send("$X\n");
-    say("$FEELER=NEW\n");
+    say("$FEELER=NEW");
     EXPECT_EQ(at_sender_.back(), "ok");
 }
 
@@ -598,31 +629,75 @@ TEST_F(GatedSender, SpeaksToTheOperator) {
     begin();
     for (const char* line : {"$FEELER=T", "$FEELER=T99999999999", "$FEELER=T-1", "$FEELER=T7",
                              "$FEELER=X", "$FEELERS", "$J", "[ESP1]"}) {
-        say(std::string(line) + "\n");
+        say(line);
         EXPECT_EQ(at_sender_.back(), "error:3") << line;
     }
     send("$FEELER\n");
     EXPECT_THAT(at_sender_[at_sender_.size() - 2], HasSubstr("0 lines passed"));
-    say("$FEELER=SETUP\nG0X1\n");
+    say("$FEELER=SETUP");
+    EXPECT_EQ(at_sender_.back(), "ok");
+    send("G0X1\n");
     EXPECT_EQ(at_sender_.back(), "error:9");
     send("$X\n");
-    say("$FEELER=ZERO\nG0X1\n");
+    at_sender_.clear();
+    say("$FEELER=ZERO");
+    send("G0X1\n");
     EXPECT_EQ(at_sender_.back(), "ok");
 }
 
-/// A program that says them is not heard.
-TEST_F(GatedSender, HearsWordsOnlyAfterAPause) {
+/// A program does not know the number.
+TEST_F(GatedSender, HearsWordsOnlyWithTheNumberThatItShows) {
     begin();
-    send("G0X1\n$FEELER=SETUP\n");
+    send("$FEELER=SETUP\n$FEELER=SETUP-\n$FEELER=SETUP-0\n$FEELER=SETUP-1x\n");
+    EXPECT_EQ(std::count(at_sender_.begin(), at_sender_.end(), "error:3"), 3);
+    at_sender_.clear();
+    send("$FEELER=NEW\n"); // its number is not that of another word
+    const size_t at = at_sender_[0].find("NEW-");
+    ASSERT_NE(at, std::string::npos) << at_sender_[0];
+    send("$FEELER=SETUP" + at_sender_[0].substr(at + 3, 4) + "\n");
     EXPECT_EQ(at_sender_.back(), "error:3");
-    send("$FEELER=SETUP\n");
-    EXPECT_EQ(at_sender_.back(), "error:3");
-    gate_.from_sender("G0X2\n$FEELER=SETUP\n"); // sent in one go, and answered late
-    gate_.tick(time_ += 5000);
-    play_controller();
+    send("$FEELER=NEW" + at_sender_[0].substr(at + 3, 4) + "\n"); // and it holds once
     EXPECT_EQ(at_sender_.back(), "error:3");
     send("G0X70Z0\n");
     EXPECT_EQ(at_sender_.back(), "error:9");
+}
+
+/// A word that was refused has no effect later.
+TEST_F(GatedSender, ForgetsWordsThatCouldNotTakeEffect) {
+    begin();
+    say("$FEELER=SETUP");
+    state_ = "Alarm";
+    gate_.from_controller("ALARM:1\r\n");
+    at_sender_.clear();
+    say("$FEELER=ZERO");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    state_ = "Idle";
+    send("$X\nG0X1\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    EXPECT_THAT(at_sender_[at_sender_.size() - 2], HasSubstr("$FEELER=ZERO"));
+}
+
+TEST_F(GatedSender, IsGreetedAlsoInAnAlarm) {
+    begin();
+    state_ = "Alarm";
+    gate_.sender_came();
+    gate_.tick(time_ += 1000);
+    play_controller();
+    EXPECT_THAT(at_sender_, ElementsAre(StartsWith("Grbl")));
+}
+
+TEST_F(GatedSender, IsToldThatAControllerDoesNotComeBack) {
+    begin();
+    gate_.from_sender("\x18");
+    for (int i = 0; i < 40; ++i) gate_.tick(time_ += 100);
+    EXPECT_THAT(at_sender_, ElementsAre(HasSubstr("does not answer after the reset")));
+}
+
+TEST_F(GatedSender, LeavesACheckModeThatWasOnAtTheStart) {
+    state_ = "Check";
+    begin();
+    send("$C\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
 }
 
 TEST_F(GatedSender, IsToldOfAControllerThatDoesNotAnswer) {
