@@ -51,6 +51,7 @@ void Gate::sender_came() {
 }
 
 void Gate::sender_left() {
+    greets_ = false;
     if (has_jogged_) act_at_once(jog_cancel);
     from_sender_.clear();
     drop_unsent();
@@ -73,7 +74,7 @@ void Gate::from_sender(std::string_view bytes) {
 /// Grbl takes these out of what it receives before anything else.
 void Gate::act_at_once(char byte) {
     if (byte == cycle_start && is_derailed_)
-        return say("lines would run from the wrong place. Reset Grbl to go on");
+        return say("lines would run from the wrong place. Reset Grbl to go on.");
     links_.to_controller(std::string_view(&byte, 1));
     if (byte == soft_reset) {
         awaits_reset_ = true;
@@ -93,8 +94,6 @@ void Gate::cancel_jogs() {
     };
     if (!has_jogged_ && std::none_of(lines_.begin(), lines_.end(), is_waiting)) return;
     drop_unsent();
-    answered_through_ = made_through_;
-    cancelled_through_ = last_number_;
     // Grbl may still read one that is on its way, and then run it from another place.
     cancels_again_ = std::any_of(outstanding_.begin(), outstanding_.end(), [](const Sent& sent) {
         return sent.line && sent.line->kind == GrblLine::jog;
@@ -121,9 +120,8 @@ void Gate::answer(const LinePointer& line, std::string reply) {
 }
 
 void Gate::flush_replies() {
-    for (; !lines_.empty() && lines_.front()->stage == Stage::answered; lines_.pop_front()) {
+    for (; !lines_.empty() && lines_.front()->stage == Stage::answered; lines_.pop_front())
         links_.to_sender(lines_.front()->reply + "\r\n");
-    }
 }
 
 /// What was not sent to the controller yet will not be, or is checked anew.
@@ -334,14 +332,15 @@ bool Gate::handle_own_command(const LinePointer& line) {
     if (dash == std::string_view::npos) {
         asked_word_ = line->text;
         word_number_ = drawn_number();
-        say(fmt::format("send {}-{} if {}", line->text, word_number_, meaning_of(*word)));
+        say(fmt::format("send {}-{} if {}.", line->text, word_number_, meaning_of(*word)));
         answer(line, "ok");
         return true;
     }
     if (word_ && !needs_asking_) { // it has taken effect
+        const bool is_done = is_set_up_ || word_->kind == OperatorWord::Kind::sets_up;
         word_.reset();
-        if (said_.empty()) say("the zero is set, and motions are checked");
-        answer(line, "ok");
+        if (said_.empty()) say("the zero is set, and motions are checked.");
+        answer(line, is_done ? "ok" : "error:3");
         return true;
     }
     if (word_) { // it takes effect when the control has been asked
@@ -398,6 +397,7 @@ bool Gate::is_plain(const Line& line) {
 void Gate::send_line(const LinePointer& line) {
     line->stage = Stage::sent;
     last_sent_ = now_;
+    has_moved_ = has_moved_ || !is_plain(*line) || line->verdict.moves;
     outstanding_.push_back({line, line->text.size() + 1});
     links_.to_controller(line->text + "\n");
 }
@@ -453,9 +453,15 @@ void Gate::take_answer(const std::string& text) {
     answer(line, text);
     if (text == "ok") {
         if (line->kind == GrblLine::unlock || line->kind == GrblLine::home) is_alarmed_ = false;
-        if (line->kind == GrblLine::home) may_be_lost_ = false;
+        if (line->kind == GrblLine::home) {
+            may_be_lost_ = false;
+            was_homed_ = was_homed_ || !std::exchange(is_homed_, true);
+        }
         // Grbl resets itself when it leaves check mode.
-        if (line->text == "$C") (is_checking_only_ ? awaits_reset_ : is_checking_only_) = true;
+        if (line->text == "$C") {
+            (is_checking_only_ ? awaits_reset_ : is_checking_only_) = true;
+            reset_at_ = now_;
+        }
         if (was_checked) {
             ++passed_;
             note_made(line);
@@ -483,15 +489,13 @@ void Gate::take_answer(const std::string& text) {
 void Gate::note_made(const LinePointer& line) {
     if (is_checking_only_ || is_alarmed_ || is_derailed_ || awaits_reset_) return;
     // Grbl takes jogs when all other motions have ended.
+    // They may be cancelled at any time, also by a button on the board: what they cut stays.
     if (line->kind == GrblLine::jog) {
-        has_moved_ = true;
-        made_through_ = std::max(made_through_, last_code_);
-        if (line->number <= cancelled_through_) return;
+        made_through_ = std::max(made_through_, answered_through_);
         ++jogs_;
+        return;
     }
     answered_through_ = line->number;
-    has_moved_ = has_moved_ || line->verdict.moves;
-    if (line->kind == GrblLine::code) last_code_ = line->number;
     // Grbl waits until all motions before have ended.
     if (line->verdict.stops_at_contact || (line->text.starts_with("G4P") && !line->verdict.moves)) {
         made_through_ = line->number;
@@ -588,11 +592,13 @@ void Gate::ask_control() {
 
 /// Refuses what may move and waits until more is known of the control.
 void Gate::lock_waiting() {
-    for (const LinePointer& line : lines_)
-        if (line->stage == Stage::waiting
-            && (line->kind == GrblLine::code || line->kind == GrblLine::jog
-                || line->kind == GrblLine::other))
+    for (const LinePointer& line : lines_) {
+        if (line->stage != Stage::waiting) continue;
+        if (line->text == "$C") answer(line, "error:8");
+        if (line->kind == GrblLine::code || line->kind == GrblLine::jog
+            || line->kind == GrblLine::other)
             answer(line, std::string(locked));
+    }
     word_.reset();
 }
 
@@ -623,23 +629,30 @@ void Gate::take_facts() {
     // A board that starts takes its place for zero.
     facts_.is_lost = std::exchange(may_be_lost_, false) && glm::length(position) < least_travel
                      && (!was_asked_ || has_moved_ || glm::length(was_at_) >= least_travel);
+    if (facts_.is_lost) is_homed_ = false;
+    facts_.was_homed = std::exchange(was_homed_, false) && was_asked_;
     was_asked_ = true;
     was_at_ = position;
     has_moved_ = false;
     asking_ = Asking::check;
-    const auto problem = std::make_shared<std::string>();
+    struct Outcome {
+        std::string objection;
+        bool is_set_up = false;
+    };
+    const auto outcome = std::make_shared<Outcome>();
     links_.run(
-        [problem, facts = facts_, position, made = made_through_, word = word_](LineCheck& check) {
-            const auto done = check.synchronise(facts, position, made, word);
-            *problem = done ? check.objection() : done.error().message;
+        [outcome, facts = facts_, position, made = made_through_, word = word_](LineCheck& check) {
+            check.synchronise(facts, position, made, word);
+            *outcome = {check.objection(), check.is_set_up()};
         },
-        [this, problem, epoch = epoch_] {
+        [this, outcome, epoch = epoch_] {
+            if (!outcome->objection.empty() && said_ != outcome->objection) say(outcome->objection);
+            said_ = outcome->objection;
+            is_set_up_ = outcome->is_set_up;
             if (epoch != epoch_) return;
             asking_ = Asking::nothing;
             needs_asking_ = has_jogged_ = false;
             answered_through_ = made_through_ = followed_ = last_number_;
-            if (!problem->empty() && said_ != *problem) say(*problem);
-            said_ = *problem;
             go_on();
         });
 }
@@ -667,7 +680,7 @@ void Gate::tick(int64_t now) {
         links_.to_controller(std::string_view(&status_request, 1));
     }
     if (awaits_reset_ && now_ - reset_at_ >= patience && !std::exchange(said_no_answer_, true))
-        say("the controller does not answer after the reset");
+        say("the controller does not answer after the reset.");
     // Says early what is wrong.
     if (!knows_settings_ && now_ - asked_status_ >= patience) ask_control();
     go_on();

@@ -105,9 +105,11 @@ private:
     bool may_be_lost_ = false;            // where the machine is, by a restart
     core::Vec3 was_at_ = core::Vec3(0.0); // when it was asked last, mm
     bool was_asked_ = false;
-    bool has_moved_ = false; // since then
-    bool was_dry_ = false;   // it was in check mode
-    std::string asked_word_; // of the operator, to be said again with a number
+    bool is_set_up_ = false;                    // as the check says
+    bool is_homed_ = false, was_homed_ = false; // since it was started; since it was asked
+    bool has_moved_ = false;                    // since then
+    bool was_dry_ = false;                      // it was in check mode
+    std::string asked_word_;                    // of the operator, to be said again with a number
     int word_number_ = 0;
     std::optional<OperatorWord> word_; // takes effect when the control has been asked
     bool cancels_again_ = false;       // when a jog that is on its way is answered
@@ -127,12 +129,11 @@ private:
     uint64_t epoch_ = 0; // counts what makes answers of the check obsolete
     bool is_judging_ = false, is_following_ = false;
     // Numbers of lines: the last one; of those that were made, are followed in the check, were
-    // taken in; the last that is no jog.
-    uint64_t last_number_ = 0, made_through_ = 0, followed_ = 0, answered_through_ = 0,
-             last_code_ = 0, cancelled_through_ = 0; // of jogs
-    std::deque<uint64_t> in_planner_;                // lines that may still be in the planner
+    // taken in without jogs.
+    uint64_t last_number_ = 0, made_through_ = 0, followed_ = 0, answered_through_ = 0;
+    std::deque<uint64_t> in_planner_; // lines that may still be in the planner
     int64_t now_ = 0, last_answer_ = 0, last_sent_ = 0, asked_status_ = 0, last_refusal_ = 0,
-            last_reply_ = 0, reset_at_ = 0; // ms
+            reset_at_ = 0; // ms
     uint64_t passed_ = 0, refused_ = 0;
 };
 

@@ -59,6 +59,7 @@ struct GrblFacts {
     bool is_reset = false;                 // it was reset since it was asked before
     bool is_dry = false;                   // what it did since then was in check mode
     bool is_lost = false;                  // nobody knows where the machine is
+    bool was_homed = false;                // for the first time since it was started
     unsigned seen = 0;                     // one bit for each of G54 to G59, G92, G28, G30, TLO
     bool has_offsets() const { return seen == 0x3ff; }
     core::Vec3 scaled(core::Vec3 reported) const; // to mm

@@ -192,18 +192,35 @@ bool has_arc(const std::vector<core::Event>& events) {
     });
 }
 
-/// Whether an arc ends so near to its start that Grbl, with its single floats, may take it for a
-/// full circle or a full circle for it.
-bool is_doubtful_arc(const core::Event& event) {
-    constexpr double least_angle = 1e-5;
+/// Whether an arc ends so near to its start that Grbl, with its single floats and from a place that
+/// is known to a step only, may make a full circle of it, or leave a full circle out.
+bool is_doubtful_arc(const core::Event& event, const core::Vec3& step) {
     const core::Motion* const motion = motion_in(event);
     if (!motion || !motion->arc) return false;
-    const auto moves_along = [&](int by) {
+    constexpr double rounding = 0.002, usual_step = 0.02; // mm
+    const double of_steps = glm::length(step) > 0.0 ? glm::length(step) : usual_step;
+    double chord = 0.0;
+    for (int by = 1; by <= 2; ++by) {
         const auto axis = static_cast<size_t>((motion->arc->normal + by) % 3);
-        return motion->from[axis] != motion->to[axis];
-    };
-    const double angle = std::remainder(motion->arc->angle, 2.0 * std::numbers::pi);
-    return std::abs(angle) < least_angle && (moves_along(1) || moves_along(2));
+        chord = std::hypot(chord, *motion->to[axis] - *motion->from[axis]);
+    }
+    return chord > 0.0 && chord < 1.5 * of_steps + rounding;
+}
+
+/// The events with arcs of less than a turn.
+std::vector<core::Event> with_short_arcs(std::vector<core::Event> events) {
+    for (core::Event& event : events)
+        if (auto* const motion = std::get_if<core::Motion>(&event); motion && motion->arc)
+            motion->arc->angle = std::remainder(motion->arc->angle, 2.0 * std::numbers::pi);
+    return events;
+}
+
+/// The events with full circles in place of short arcs.
+std::vector<core::Event> with_full_circles(std::vector<core::Event> events) {
+    for (core::Event& event : events)
+        if (auto* const motion = std::get_if<core::Motion>(&event); motion && motion->arc)
+            motion->arc->angle = std::copysign(2.0 * std::numbers::pi, motion->arc->angle);
+    return events;
 }
 
 bool is_straight_up(const core::Motion& motion) {
@@ -407,9 +424,8 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
     if (facts.is_reset) called_.reset(); // otherwise Grbl itself forgets it with the next line
 }
 
-core::Result<void> LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
-                                          uint64_t made_through,
-                                          const std::optional<OperatorWord>& word) {
+void LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
+                            uint64_t made_through, const std::optional<OperatorWord>& word) {
     using Kind = OperatorWord::Kind;
     if (judge_) follow(made_through, waiting_.size());
     // A part of the others may have been made, but not in check mode.
@@ -420,7 +436,9 @@ core::Result<void> LineCheck::synchronise(const GrblFacts& facts, const core::Ve
     problem_.clear();
     const bool says_zero = (word && word->kind != Kind::sets_up)
                            || (std::exchange(zero_is_set_, false) && !facts.is_lost);
-    if (facts.is_lost || (word && word->kind == Kind::sets_up)) is_set_up_ = false;
+    // The zero was set on a machine that did not know its place before.
+    const bool moves_zero = facts.was_homed && takes_offsets_ && is_set_up_ && made_;
+    if (facts.is_lost || moves_zero || (word && word->kind == Kind::sets_up)) is_set_up_ = false;
     if (word && word->tool) {
         tool_ = core::ToolNumber{*word->tool};
         tool_was_changed_ = true;
@@ -433,17 +451,17 @@ core::Result<void> LineCheck::synchronise(const GrblFacts& facts, const core::Ve
                                "clear it ($N0= and $N1=) without the gate.",
                                facts.stored_line);
     else if (says_zero)
-        if (auto taken = take_zero(facts, word && word->kind == Kind::new_workpiece); !taken)
-            return taken;
+        note_failure(take_zero(facts, word && word->kind == Kind::new_workpiece));
     if (is_set_up_) tool_was_changed_ = false;
-    if (is_set_up_ && !made_)
-        if (auto built = build(facts); !built) return built;
+    if (is_set_up_ && !made_) note_failure(build(facts));
     if (facts.is_lost && !says_zero)
         problem_ =
             "The controller was restarted, and takes its place for zero. Home it, or touch off.";
+    if (moves_zero && !says_zero)
+        problem_ = "The machine was homed after the zero was set, so the zero may be elsewhere.";
     take_modes(facts, position);
     knows_control_ = true;
-    if (!is_set_up_) return {};
+    if (!is_set_up_) return;
     const core::AxisPosition here = position_at(position - core::Vec3(0.0, 0.0, shift_));
     // Otherwise an end of a retreat is no new beginning.
     if (!is_near(before, here)) judge_->begin_retreat();
@@ -452,7 +470,14 @@ core::Result<void> LineCheck::synchronise(const GrblFacts& facts, const core::Ve
     made_->spindle = spindle_;
     ahead_ = *made_;
     may_retreat_ = true;
-    return {};
+}
+
+/// Without a model, nothing can be checked.
+void LineCheck::note_failure(const core::Result<void>& done) {
+    if (done) return;
+    is_set_up_ = false;
+    made_.reset();
+    problem_ = done.error().message + ".";
 }
 
 std::string LineCheck::objection() const {
@@ -529,12 +554,26 @@ LineVerdict LineCheck::judge_unchecked(LineVerdict verdict, const std::vector<co
     return verdict;
 }
 
-LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Event> events) {
+LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Event>& events) {
     if (verdict.stops_at_contact) {
         verdict.answer.reason = judge_->problem_beyond_contact(events, *ahead_);
         if (!verdict.answer.reason.empty()) return verdict;
     }
-    verdict.answer = judge_->judge(events, *ahead_);
+    const bool is_doubtful =
+        std::any_of(events.begin(), events.end(),
+                    [&](const core::Event& event) { return is_doubtful_arc(event, step_); });
+    if (is_doubtful) {
+        core::SimulatorState state = *ahead_;
+        verdict.answer = judge_->judge(with_full_circles(events), state);
+        if (!verdict.answer.may_move) {
+            verdict.answer.reason =
+                "Grbl may make a full circle of this arc. " + verdict.answer.reason;
+            return verdict;
+        }
+    }
+    // What only a full circle would cut stays in the stock.
+    verdict.answer = judge_->judge(is_doubtful ? with_short_arcs(events) : events, *ahead_);
+    if (is_doubtful && verdict.answer.may_move) events = with_short_arcs(std::move(events));
     if (shift_ != 0.0 && verdict.answer.reason.find("machine coordinates") != std::string::npos)
         verdict.answer.reason +=
             fmt::format(" (Here Z is {} less than on the control, by the length of "
@@ -547,7 +586,7 @@ LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Even
     }
     rewind();
     if (!may_retreat_) return verdict;
-    const LiveAnswer retreat = judge_->judge_retreat(std::move(events), 0.0, *ahead_);
+    const LiveAnswer retreat = judge_->judge_retreat(events, 0.0, *ahead_);
     if (retreat.may_move)
         verdict.answer = retreat;
     else
@@ -630,14 +669,16 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
         });
     verdict.asks_anew = verdict.asks_anew || verdict.stops_at_contact;
     const auto called = control.modal.selected_tool ? control.modal.selected_tool : called_;
+    const bool switches_spindle = std::any_of(events.begin(), events.end(), [](const auto& event) {
+        return std::holds_alternative<core::SpindleChange>(event);
+    });
     if (!is_set_up_) {
+        programs_spindle_ = programs_spindle_ || switches_spindle;
         verdict = judge_unchecked(std::move(verdict), events, is_jog);
         // Behind motions the control is asked anew.
         if (verdict.answer.may_move && !verdict.moves) control_ = std::move(control);
         return verdict;
     }
-    if (std::any_of(events.begin(), events.end(), is_doubtful_arc))
-        return not_understood("This arc is so flat that Grbl may make a full circle of it.", 9);
     if (verdict.moves && has_arc(events) && arc_error_ > most_arc_error)
         return not_understood(
             fmt::format("Grbl makes arcs with chords up to {:.3g} mm off ($12): set "
@@ -663,8 +704,7 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
         lowering_ = lowering;
     }
     called_ = called;
-    for (const core::Event& event : events)
-        programs_spindle_ = programs_spindle_ || std::holds_alternative<core::SpindleChange>(event);
+    programs_spindle_ = programs_spindle_ || switches_spindle;
     waiting_.push_back({number, std::move(events)});
     return verdict;
 }

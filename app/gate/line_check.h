@@ -53,12 +53,10 @@ public:
 
     /// Takes over what the control says while it stands still at `position` (machine coordinates,
     /// mm). Lines up to `made_through` were made, and those after it were not, or not to their end:
-    /// what they cut stays in the stock. The model of the stock is built when the zero is known.
-    ///
-    /// Errors: why the stock cannot be modelled, or the set-up cannot be read any more.
-    core::Result<void> synchronise(const GrblFacts& facts, const core::Vec3& position,
-                                   uint64_t made_through,
-                                   const std::optional<OperatorWord>& word = {});
+    /// what they cut stays in the stock. The model of the stock is built when the zero is known; if
+    /// that is not possible, the objection says why.
+    void synchronise(const GrblFacts& facts, const core::Vec3& position, uint64_t made_through,
+                     const std::optional<OperatorWord>& word = {});
 
     /// Checks a line that Grbl has read (as_grbl_reads): G-code, or $J= with `is_jog`. Those that
     /// may be sent are taken to be run after the ones before, in the order of their numbers.
@@ -95,7 +93,8 @@ private:
                           std::optional<core::ToolNumber> called) const;
     LineVerdict judge_unchecked(LineVerdict verdict, const std::vector<core::Event>& events,
                                 bool is_jog) const;
-    LineVerdict judge_motions(LineVerdict verdict, std::vector<core::Event> events);
+    LineVerdict judge_motions(LineVerdict verdict, std::vector<core::Event>& events);
+    void note_failure(const core::Result<void>& done);
     std::string tool_note() const;
     void rewind();
     size_t cuts() const;

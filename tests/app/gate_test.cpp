@@ -150,7 +150,7 @@ facts_at_zero(const std::string& modes = "G0 G54 G17 G21 G90 G94 M3 M9 T0 F500 S
 class CheckedLines : public ::testing::Test {
 protected:
     CheckedLines() : check_(open(bodies)) {
-        EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0));
+        check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0);
     }
 
     app::LineCheck open(const std::string& text) {
@@ -198,8 +198,8 @@ TEST_F(CheckedLines, TellWhatGrblRefuses) {
     EXPECT_EQ(judge("G0X-").error, 2);
     EXPECT_EQ(judge("G0X0000000012.5").error, 2); // Grbl reads 0
     EXPECT_EQ(judge("$J=F100", true).error, 26);  // Grbl would go to machine zero
-    EXPECT_TRUE(check_.synchronise(facts_at_zero("G1 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0"),
-                                   core::Vec3(0, 0, 40), number_));
+    check_.synchronise(facts_at_zero("G1 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0"), core::Vec3(0, 0, 40),
+                       number_);
     EXPECT_EQ(judge("X1").error, 22);
 }
 
@@ -245,13 +245,13 @@ TEST_F(CheckedLines, CutOnlyWhenTheyWereMade) {
     const uint64_t made = number_;
     EXPECT_TRUE(passes("X40"));
     EXPECT_TRUE(passes("G0X-60")); // along both
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(-60, 0, -5), made));
+    check_.synchronise(facts_at_zero(), core::Vec3(-60, 0, -5), made);
     EXPECT_TRUE(passes("G0X0"));
     EXPECT_FALSE(passes("X40"));
 }
 
 TEST_F(CheckedLines, MayRetreatOnlyBeforeTheFirstThatIsClear) {
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, -5), 0)); // within the stock
+    check_.synchronise(facts_at_zero(), core::Vec3(0, 0, -5), 0); // within the stock
     EXPECT_FALSE(passes("G0X5"));
     EXPECT_TRUE(passes("Z5"));
     EXPECT_TRUE(passes("X20"));
@@ -264,7 +264,7 @@ TEST_F(CheckedLines, AreUncheckedAndFewBeforeTheZeroIsSet) {
     auto opened = app::LineCheck::open(folder_.write("router.toml", bodies), {});
     ASSERT_TRUE(opened);
     check_ = *std::move(opened);
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0));
+    check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0);
     EXPECT_THAT(check_.objection(), HasSubstr("$FEELER=ZERO"));
     EXPECT_TRUE(passes("G21"));
     EXPECT_TRUE(judge("$J=G91X70Z-30F500", true).answer.may_move);
@@ -273,13 +273,13 @@ TEST_F(CheckedLines, AreUncheckedAndFewBeforeTheZeroIsSet) {
     EXPECT_TRUE(passes("G10L20P1X5"));
     EXPECT_THAT(judge("G0X1").answer.reason, HasSubstr("$FEELER=ZERO"));
     EXPECT_THAT(judge("G0Z30").answer.reason, HasSubstr("$FEELER=ZERO"));
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), number_,
-                                   app::OperatorWord{Kind::zero_is_set, {}}));
+    check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), number_,
+                       app::OperatorWord{Kind::zero_is_set, {}});
     EXPECT_EQ(check_.objection(), "");
     EXPECT_TRUE(passes("G0X1"));
     EXPECT_FALSE(passes("G0X70Z5"));
-    EXPECT_TRUE(check_.synchronise(facts_at_zero(), core::Vec3(1, 0, 40), number_,
-                                   app::OperatorWord{Kind::sets_up, {}}));
+    check_.synchronise(facts_at_zero(), core::Vec3(1, 0, 40), number_,
+                       app::OperatorWord{Kind::sets_up, {}});
     EXPECT_FALSE(passes("G0X2"));
     EXPECT_THAT(check_.why_not({Kind::sets_up, 5}), HasSubstr("does not describe tool 5"));
 }
@@ -291,42 +291,62 @@ TEST_F(CheckedLines, DoNotMoveTheBodies) {
                 HasSubstr("G54 with G92 Z is -40.000 on the control"));
     app::GrblFacts facts = facts_at_zero();
     facts.axis_offset.z = -40.0;
-    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_));
+    check_.synchronise(facts, core::Vec3(0, 0, 40), number_);
     EXPECT_THAT(check_.objection(), HasSubstr("$FEELER=ZERO"));
     EXPECT_FALSE(passes("G0X70"));
-    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), number_,
-                                   app::OperatorWord{app::OperatorWord::Kind::zero_is_set, {}}));
+    check_.synchronise(facts, core::Vec3(0, 0, 40), number_,
+                       app::OperatorWord{app::OperatorWord::Kind::zero_is_set, {}});
     EXPECT_TRUE(passes("G0X70"));    // 80 above the clamp's lower end
     EXPECT_FALSE(passes("G0X0Z-1")); // the stock is 40 lower, too
-    EXPECT_TRUE(check_.synchronise(facts_at_zero("G0 G55 G17 G21 G90 G94 M3 M9 T0 F500 S1000"),
-                                   core::Vec3(0, 0, 40), number_));
+    check_.synchronise(facts_at_zero("G0 G55 G17 G21 G90 G94 M3 M9 T0 F500 S1000"),
+                       core::Vec3(0, 0, 40), number_);
     EXPECT_THAT(check_.objection(), HasSubstr("G55 is in use"));
 }
 
 /// Grbl takes them for full circles.
 TEST_F(CheckedLines, AreNoFlatArcs) {
-    EXPECT_FALSE(passes("G2X0.001Y0R2500"));
-    EXPECT_FALSE(passes("G3X10R100000000"));
+    check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 5), 0);
+    EXPECT_THAT(judge("G2X0.001Y0R2500").answer.reason, HasSubstr("may make a full circle"));
+    EXPECT_TRUE(passes("G2X0.001Y0R5"));
     EXPECT_TRUE(passes("G2X1R100"));
     EXPECT_TRUE(passes("G2X1Y0I1J0")); // a full circle
+}
+
+/// Without a model nothing passes.
+TEST_F(CheckedLines, SayWhyThereIsNoModel) {
+    check_ = open("memory_limit = 0.001\n" + bodies);
+    check_.synchronise(facts_at_zero(), core::Vec3(0, 0, 40), 0);
+    EXPECT_FALSE(check_.is_set_up());
+    EXPECT_THAT(check_.objection(), HasSubstr("scan lines"));
+    EXPECT_FALSE(passes("G0X1"));
 }
 
 TEST_F(CheckedLines, NeedFineArcsOfGrbl) {
     app::GrblFacts facts = facts_at_zero();
     facts.arc_tolerance = 0.5;
-    EXPECT_TRUE(check_.synchronise(facts, core::Vec3(0, 0, 40), 0));
+    check_.synchronise(facts, core::Vec3(0, 0, 40), 0);
     EXPECT_TRUE(passes("G1X1"));
     EXPECT_THAT(judge("G2X3R1").answer.reason, HasSubstr("$12"));
+}
+
+/// What only a full circle would cut stays.
+TEST_F(CheckedLines, CutNoFullCircleOfAFlatArc) {
+    EXPECT_TRUE(passes("G0X-60"));
+    EXPECT_TRUE(passes("Z-2"));
+    EXPECT_TRUE(passes("G1X0"));
+    EXPECT_TRUE(passes("G2X0.001I15")); // a circle to X30, or nothing
+    EXPECT_TRUE(passes("G0X-60"));
+    EXPECT_FALSE(passes("G0X30"));
 }
 
 /// A spindle that is switched by hand does not turn again after M5.
 TEST_F(CheckedLines, SwitchTheSpindleOff) {
     check_ = open(bodies + "[program]\nspindle_at_start = \"clockwise\"\n");
     const auto off = facts_at_zero("G0 G54 G17 G21 G90 G94 M5 M9 T0 F500 S0");
-    EXPECT_TRUE(check_.synchronise(off, core::Vec3(-60, 0, -3), 0));
+    check_.synchronise(off, core::Vec3(-60, 0, -3), 0);
     EXPECT_TRUE(passes("G1X-50F100"));
     EXPECT_TRUE(passes("M5"));
-    EXPECT_TRUE(check_.synchronise(off, core::Vec3(-50, 0, -3), number_));
+    check_.synchronise(off, core::Vec3(-50, 0, -3), number_);
     EXPECT_FALSE(passes("G1X-40"));
 }
 
@@ -341,8 +361,7 @@ TEST_F(CheckedLines, KnowOnlyToolsOfGrbl) {
 
 /// The clearance of many small steps does not add up.
 TEST_F(CheckedLines, DoNotCreepTowardsABody) {
-    EXPECT_TRUE(
-        check_.synchronise(facts_at_zero(), core::Vec3(54.5, 0, 5), 0)); // 0.5 from the clamp
+    check_.synchronise(facts_at_zero(), core::Vec3(54.5, 0, 5), 0); // 0.5 from the clamp
     EXPECT_TRUE(passes("G91G0X0.009"));
     EXPECT_FALSE(passes("X0.009"));
     EXPECT_TRUE(passes("X-1"));
@@ -623,6 +642,36 @@ TEST_F(GatedSender, IsToldThatTheControllerWasRestarted) {
     send("$X\n");
     say("$FEELER=NEW");
     EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+/// A hold button on the board cancels jogs, and the gate does not hear of it.
+TEST_F(GatedSender, TakesNothingForCutByJogs) {
+    begin();
+    send("G0X-60\nZ-3\n");
+    position_ = "-60.000,0.000,-3.000";
+    send("$J=X40F100\n");
+    position_ = "-35.000,0.000,-3.000";
+    send("G0X30\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+}
+
+TEST_F(GatedSender, MustConfirmTheZeroAfterTheFirstHoming) {
+    begin();
+    send("G0X5\n$H\nG0X6\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("was homed after the zero was set")));
+    send("$X\n");
+    at_sender_.clear();
+    say("$FEELER=NEW");
+    send("$H\nG0X6\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+TEST_F(GatedSender, GetsAnAnswerToCheckModeInAnAlarm) {
+    begin();
+    state_ = "Alarm";
+    send("$X\n$C\n");
+    EXPECT_EQ(at_sender_.back(), "error:8");
 }
 
 TEST_F(GatedSender, SpeaksToTheOperator) {

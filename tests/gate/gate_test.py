@@ -563,7 +563,7 @@ def takes_the_zero_from_the_control():
         rig.expect("G10L20P1X50")
         rig.refused("G0X51", "when the zero was set", "$FEELER=ZERO")
         rig.expect("$X")
-        assert "$FEELER=NEW" in rig.say("$FEELER=ZERO")  # the stock is cut
+        assert "$FEELER=NEW" in rig.say("$FEELER=ZERO", "error:3")  # the stock is cut
         rig.say("$FEELER=NEW")
         rig.expect("G0X20")
         rig.refused("G0Z-2", "stock")
