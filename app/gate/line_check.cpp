@@ -199,12 +199,13 @@ bool is_doubtful_arc(const core::Event& event, const core::Vec3& step) {
     if (!motion || !motion->arc) return false;
     constexpr double rounding = 0.002, usual_step = 0.02; // mm
     const double of_steps = glm::length(step) > 0.0 ? glm::length(step) : usual_step;
-    double chord = 0.0;
+    core::Vec3 chord(0.0);
     for (int by = 1; by <= 2; ++by) {
         const auto axis = static_cast<size_t>((motion->arc->normal + by) % 3);
-        chord = std::hypot(chord, *motion->to[axis] - *motion->from[axis]);
+        chord[by] = *motion->to[axis] - *motion->from[axis];
     }
-    return chord > 0.0 && chord < 1.5 * of_steps + rounding;
+    const double length = glm::length(chord);
+    return length > 0.0 && length < 1.5 * of_steps + rounding;
 }
 
 /// The events with arcs of less than a turn.
