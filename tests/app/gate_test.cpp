@@ -357,6 +357,13 @@ TEST_F(CheckedLines, KnowOnlyToolsOfGrbl) {
     EXPECT_TRUE(passes("X2"));
     EXPECT_TRUE(passes("T2"));
     EXPECT_THAT(judge("X3").answer.reason, HasSubstr("calls tool 2"));
+    // Grbl forgets T, and the gate does not, before a reset.
+    app::GrblFacts facts = facts_at_zero();
+    check_.synchronise(facts, core::Vec3(2, 0, 40), number_);
+    EXPECT_FALSE(passes("X3"));
+    facts.is_reset = true;
+    check_.synchronise(facts, core::Vec3(2, 0, 40), number_);
+    EXPECT_TRUE(passes("X3"));
 }
 
 /// The clearance of many small steps does not add up.
@@ -364,7 +371,9 @@ TEST_F(CheckedLines, DoNotCreepTowardsABody) {
     check_.synchronise(facts_at_zero(), core::Vec3(54.5, 0, 5), 0); // 0.5 from the clamp
     EXPECT_TRUE(passes("G91G0X0.009"));
     EXPECT_FALSE(passes("X0.009"));
-    EXPECT_TRUE(passes("X-1"));
+    check_.synchronise(facts_at_zero(), core::Vec3(54.509, 0, 5), number_); // as after $X
+    EXPECT_FALSE(passes("G91G0X0.009"));
+    EXPECT_TRUE(passes("G91G0X-1"));
     EXPECT_FALSE(passes("X0.5"));
     EXPECT_TRUE(passes("X-0.1"));
 }
