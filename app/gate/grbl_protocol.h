@@ -73,7 +73,8 @@ struct GrblFacts {
     void take(std::string_view line);
 };
 
-/// The end of a line with words such as G1 X5: the number of an error that Grbl 1.1 gives.
+/// The number of Grbl's error that a message of the interpreter names, such as "(error 31)"; 20, a
+/// line that is not supported, if it names none.
 int grbl_error_in(std::string_view message);
 
 /// A push message to the sender, whose text has no brackets.

@@ -224,11 +224,6 @@ std::vector<core::Event> with_full_circles(std::vector<core::Event> events) {
     return events;
 }
 
-bool is_straight_up(const core::Motion& motion) {
-    return !motion.arc && motion.from[0] == motion.to[0] && motion.from[1] == motion.to[1]
-           && *motion.to[2] >= *motion.from[2];
-}
-
 void lower_by(core::Event& event, double z) {
     auto* const motion = std::get_if<core::Motion>(&event);
     if (!motion) return;
@@ -546,11 +541,8 @@ void LineCheck::rewind() {
 /// While nobody knows where the bodies are.
 LineVerdict LineCheck::judge_unchecked(LineVerdict verdict, const std::vector<core::Event>& events,
                                        bool is_jog) const {
-    const bool goes_up = std::all_of(events.begin(), events.end(), [](const core::Event& event) {
-        return !moves(event) || is_straight_up(*motion_in(event));
-    });
     verdict.asks_anew = verdict.asks_anew || (verdict.moves && !is_jog);
-    verdict.answer.may_move = !verdict.moves || is_jog || verdict.stops_at_contact || goes_up;
+    verdict.answer.may_move = is_jog || verdict.stops_at_contact || goes_straight_up(events);
     if (!verdict.answer.may_move) verdict.answer.reason = objection();
     return verdict;
 }

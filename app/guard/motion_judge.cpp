@@ -44,13 +44,6 @@ bool is_straight_up(const core::Motion& motion) {
     return motion.kind != core::MotionKind::arc && *motion.to[2] >= *motion.from[2];
 }
 
-bool goes_straight_up(const std::vector<core::Event>& events) {
-    return std::all_of(events.begin(), events.end(), [](const core::Event& event) {
-        const auto* const motion = std::get_if<core::Motion>(&event);
-        return !motion || is_straight_up(*motion);
-    });
-}
-
 /// The events with a spindle that stands still, and without motions that end at a contact.
 std::vector<core::Event> without_cutting(std::vector<core::Event> events) {
     for (core::Event& event : events) {
@@ -80,6 +73,13 @@ std::vector<core::Event> before_motion(const std::vector<core::Event>& events) {
 }
 
 } // namespace
+
+bool goes_straight_up(const std::vector<core::Event>& events) {
+    return std::all_of(events.begin(), events.end(), [](const core::Event& event) {
+        const auto* const motion = std::get_if<core::Motion>(&event);
+        return !motion || is_straight_up(*motion);
+    });
+}
 
 void put_at(core::SimulatorState& state, const core::AxisPosition& position) {
     state.position = position;

@@ -20,6 +20,9 @@ struct LiveAnswer {
     std::string cure = {};   // how to go on; may be empty
 };
 
+/// Whether all motions of a block move Z upwards and nothing else, or nothing at all.
+bool goes_straight_up(const std::vector<core::Event>& events);
+
 /// Brings a run to a place without a motion.
 void put_at(core::SimulatorState& state, const core::AxisPosition& position);
 

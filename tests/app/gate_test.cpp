@@ -321,6 +321,26 @@ TEST_F(CheckedLines, SayWhyThereIsNoModel) {
     EXPECT_FALSE(passes("G0X1"));
 }
 
+/// After a tool change Z of the control is another, for the centres of upright arcs, too.
+TEST_F(CheckedLines, ShiftUprightArcsByTheToolsLength) {
+    using Kind = app::OperatorWord::Kind;
+    check_ =
+        open("[program]\ntool_at_start = 1\n[[tool]]\nnumber = 2\nshape = \"flat\"\ndiameter = 10\n"
+             "flute_length = 30\nstick_out = 60\ntouched_off = 0\n"
+             + bodies.substr(bodies.find("[stock]")));
+    app::GrblFacts facts = facts_at_zero();
+    check_.synchronise(facts, core::Vec3(-60, 0, -3), 0);
+    EXPECT_TRUE(passes("G1X-40"));
+    check_.synchronise(facts, core::Vec3(-40, 0, -3), number_, app::OperatorWord{Kind::sets_up, 2});
+    facts.offsets[0].z = -40.0;
+    check_.synchronise(facts, core::Vec3(45, 0, 0), number_,
+                       app::OperatorWord{Kind::zero_is_set, {}});
+    ASSERT_EQ(check_.objection(), "");
+    EXPECT_TRUE(passes("G18G3X95Z40R25"));  // over the clamp, up to Z65
+    EXPECT_FALSE(passes("G18G3X45Z40R25")); // back below it, down to Z15
+    EXPECT_TRUE(passes("G18G2X45Z40R25"));
+}
+
 TEST_F(CheckedLines, NeedFineArcsOfGrbl) {
     app::GrblFacts facts = facts_at_zero();
     facts.arc_tolerance = 0.5;
