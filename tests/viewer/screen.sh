@@ -97,7 +97,15 @@ picture() {
 shows() {
     local name=$1 what=$2
     shift 2
-    wait_for picture_meets "$name" "$@" || die "$what"
+    wait_for picture_meets "$name" "$@" || die "$what$(difference "$@")"
+}
+# difference CONDITION NAME NAME...: where and in how many pixels the two pictures of a condition
+# differ, for the message.
+difference() {
+    [[ $1 == same* || $1 == differ ]] || return 0
+    printf ' (%s and %s differ in %s pixels, in the area %s)' "$2" "$3" "$(differing "$2" "$3")" \
+        "$(convert "$pictures/$2.png" "$pictures/$3.png" -compose difference -composite \
+            -threshold 0 -trim -format '%wx%h%O' info:)"
 }
 # still NAME: takes a picture once nothing has changed for two seconds, so that background work is
 # complete. On a slow machine the five pictures take longer, by as much as that work.
@@ -130,6 +138,14 @@ of_color() {
 # colour, or none.
 # Pictures of the same state: only what blinks may differ.
 same() { (($(differing "$1" "$2") < 200)); }
+# The same in an area, as WxH+X+Y: the caret of a field is smaller than any letter that is missing.
+same_in_area() {
+    local name
+    for name in "$1" "$2"; do
+        convert "$pictures/$name.png" -crop "$3" +repage "$pictures/$name-area.png"
+    done
+    (($(differing "$1-area" "$2-area") < 60))
+}
 differ() { (($(differing "$1" "$2") > ${3:-0})); }
 has_color() { (($(of_color "$1" "$2") > $3)); }
 has_no_color() { [[ $(of_color "$1" "$2") == 0 ]]; }
