@@ -19,6 +19,8 @@
 #include "app/guard/live_setup.h"
 #include "app/guard/motion_log.h"
 #include "app/setup/ini_file.h"
+#include "app/setup/linuxcnc_kinematics.h"
+#include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "core/base/platform.h"
 
@@ -34,15 +36,42 @@ struct GuardOptions {
     double wait = 60.0;
 };
 
+bool is_trivial(const IniFile& ini) { return ini.kinematics == "trivkins"; }
+
 /// The ini file, if its machine is one that the guard can follow.
 core::Result<IniFile> known_ini(const std::string& path) {
     FEELER_TRY(IniFile ini, read_ini(path));
-    if (ini.kinematics != "trivkins")
-        return core::fail_file(path, fmt::format("the guard does not follow the kinematics {}: it "
-                                                 "needs a machine whose axes are its joints "
-                                                 "(KINEMATICS = trivkins)",
-                                                 ini.kinematics));
+    if (!is_trivial(ini) && !is_known_kinematics(ini.kinematics))
+        return core::fail_file(path,
+                               fmt::format("the guard does not know the kinematics {}: the manual "
+                                           "has those that it knows, under \"The guard\"",
+                                           ini.kinematics));
     return ini;
+}
+
+/// The set-up, with the rotary axes of the ini file if its kinematics need them.
+core::Result<SetupFile> setup_for(const GuardOptions& options, const IniFile& ini) {
+    ProgramSettings settings;
+    if (!is_trivial(ini)) {
+        settings.ini = options.ini;
+        settings.ignores_tables = true; // the control's own are compared with the set-up
+    }
+    FEELER_TRY(SetupFile setup, read_setup(options.setup, settings));
+    if (std::string why = why_incomplete(setup, "the guard"); !why.empty())
+        return core::fail_file(options.setup, std::move(why));
+    if (is_trivial(ini)) return setup;
+    const auto& kinematics = setup.environment.kinematics;
+    if (!kinematics || !kinematics->machine)
+        return core::fail_file(options.ini,
+                               fmt::format("where the rotary axes of {} are is not known: state "
+                                           "the values of its pins under [program.values] in the "
+                                           "set-up, as \"#<_hal[{}.x-rot-point]>\" = 0",
+                                           ini.kinematics, ini.kinematics));
+    if (!has_axes_of_kinematics(setup.setup.machine, setup.environment))
+        return core::fail_file(options.setup,
+                               fmt::format("the rotary axes are not where {} in {} has them",
+                                           ini.kinematics, options.ini));
+    return setup;
 }
 
 /// Gives the axes the speeds and accelerations with which LinuxCNC plans: corners of rapids depend
@@ -136,12 +165,12 @@ private:
 class GuardRun {
 public:
     GuardRun(const GuardOptions& options, const SetupFile& setup, feeler_ring& ring,
-             ControlStatus status, double unit)
+             ControlStatus status, double unit, ControlKinematics kinematics)
         : options_(options),
           setup_(setup),
           ring_(ring),
           status_(std::move(status)),
-          guard_(setup.setup, ring, unit, options.feed_tolerance),
+          guard_(setup.setup, ring, unit, options.feed_tolerance, std::move(kinematics)),
           unit_(unit) {}
 
     void open_log();
@@ -230,10 +259,10 @@ void GuardRun::write_log() {
 void GuardRun::run() {
     guard_.objection = [this](const feeler_segment& motion) { return objection(motion); };
     guard_.tell = [this](const std::string& text) { tell(text); };
-    guard_.after_motion = [this](const feeler_segment& motion) {
+    guard_.after_motion = [this](const LiveMotion& motion) {
         if (log_) log_->add(motion);
     };
-    guard_.after_refusal = [this](const feeler_segment& motion, const LiveAnswer& answer) {
+    guard_.after_refusal = [this](const LiveMotion& motion, const LiveAnswer& answer) {
         if (log_) log_->add_refused(motion, answer.reason);
     };
     const uint64_t session = ring_.session;
@@ -264,8 +293,8 @@ std::string GuardRun::summary() const {
 }
 
 core::Result<ExitCode> guard_machine(const GuardOptions& options) {
-    FEELER_TRY(SetupFile setup, read_live_setup(options.setup, "the guard"));
     FEELER_TRY(const IniFile ini, known_ini(options.ini));
+    FEELER_TRY(SetupFile setup, setup_for(options, ini));
     const double unit = ini.machine_unit == gcode::LengthUnit::inch ? 25.4 : 1.0;
     take_speeds(setup.setup.machine, ini, unit);
     FEELER_TRY(feeler_ring* const ring, awaited_ring(options.wait));
@@ -273,7 +302,11 @@ core::Result<ExitCode> guard_machine(const GuardOptions& options) {
         return core::fail(core::ErrorCode::unsupported,
                           fmt::format("another guard runs: process {}", ring->process));
     FEELER_TRY(ControlStatus status, ControlStatus::start(options.status));
-    GuardRun run(options, setup, *ring, std::move(status), unit);
+    ControlKinematics kinematics = is_trivial(ini)
+                                       ? ControlKinematics(unit)
+                                       : ControlKinematics(unit, *setup.environment.kinematics,
+                                                           setup.setup.machine, options.tolerance);
+    GuardRun run(options, setup, *ring, std::move(status), unit, std::move(kinematics));
     run.open_log();
     print_note("watching LinuxCNC\n");
     for (const std::string& assumption : setup.assumptions) print_note(assumption + "\n");

@@ -1,6 +1,7 @@
 #include "app/guard/guard.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,8 +11,9 @@
 namespace app {
 namespace {
 
-constexpr int64_t news_after = 500; // milliseconds
-constexpr double least_time = 1e-7; // seconds
+constexpr int64_t news_after = 500;     // milliseconds
+constexpr double least_time = 1e-7;     // seconds
+constexpr double turn_tolerance = 0.02; // mm
 
 std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer) {
     std::string text = motion.line > 0 ? fmt::format("Feeler stops before line {}: ", motion.line)
@@ -59,13 +61,15 @@ bool claim(feeler_ring& ring) {
                                        __ATOMIC_ACQUIRE);
 }
 
-Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance)
-    : ring_(ring), check_(setup), unit_(unit) {
+Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance,
+             ControlKinematics kinematics)
+    : ring_(ring), check_(setup, std::move(kinematics)) {
     ring_.feed_tolerance = feed_tolerance / unit;
+    ring_.turn_tolerance = std::min(feed_tolerance, turn_tolerance) / unit;
     cleared_ = feeler_load(&ring_.cleared);
     is_latched_ = feeler_load(&ring_.latched) != 0;
     if (is_latched_) check_.refuse_until_drop();
-    check_.after_motion = [this](const feeler_segment& motion) {
+    check_.after_motion = [this](const LiveMotion& motion) {
         if (after_motion) after_motion(motion);
     };
     // What an earlier guard has read and not permitted is checked again.
@@ -133,7 +137,7 @@ bool Guard::step() {
         check_.catch_up(feeler_load(&ring_.made) + 1, cuts_at_a_time);
         return false;
     }
-    const feeler_segment motion = in_mm(ring_.segment[next % FEELER_RING_SEGMENTS], unit_);
+    const LiveMotion motion = check_.read(ring_.segment[next % FEELER_RING_SEGMENTS]);
     const bool is_dropped =
         next <= feeler_load(&ring_.dropped) && next > feeler_load(&ring_.released);
     is_disturbed_ = is_disturbed_ || motion.number != next;
@@ -145,7 +149,7 @@ bool Guard::step() {
     return true;
 }
 
-void Guard::judge(const feeler_segment& motion) {
+void Guard::judge(const LiveMotion& motion) {
     const bool follows_refusal = check_.is_refused() && !is_after_drop(motion);
     const double begin = core::platform::thread_cpu_seconds();
     const LiveAnswer answer = is_latched_ ? check_.judge_retreat(motion) : check_.judge(motion);

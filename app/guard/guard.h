@@ -31,7 +31,11 @@ public:
     /// The ring must outlive the object. It is taken over where an earlier guard has left it: the
     /// motions that wait are checked. `unit`: mm per unit of the machine's lengths.
     /// `feed_tolerance`: with which feeds are blended where a program states none, mm.
-    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance);
+    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance)
+        : Guard(setup, ring, unit, feed_tolerance, ControlKinematics(unit)) {}
+    /// For kinematics other than trivkins.
+    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance,
+          ControlKinematics kinematics);
 
     /// Why a motion may not be permitted now, such as a work offset that differs from the set-up;
     /// empty if there is no reason. The motion waits as long as there is one.
@@ -39,9 +43,9 @@ public:
     /// For the operator: what holds the machine, and that it is over.
     std::function<void(const std::string&)> tell;
     /// After each motion that was refused, in mm.
-    std::function<void(const feeler_segment&, const LiveAnswer&)> after_refusal;
+    std::function<void(const LiveMotion&, const LiveAnswer&)> after_refusal;
     /// After each motion that was made, in mm, as LiveCheck::after_motion.
-    std::function<void(const feeler_segment&)> after_motion;
+    std::function<void(const LiveMotion&)> after_motion;
 
     /// Checks the next motion. False if there was none, or if none may be permitted now; then it
     /// has followed some of the cuts that were made.
@@ -63,12 +67,11 @@ private:
     void follow_operator();
     bool may_permit(const feeler_segment& motion);
     bool can_begin() const;
-    void judge(const feeler_segment& motion);
+    void judge(const LiveMotion& motion);
     void permit(uint64_t number);
 
     feeler_ring& ring_;
     LiveCheck check_;
-    double unit_ = 1.0;
     bool is_latched_ = false;
     uint64_t cleared_ = 0;
     std::string reason_, told_; // why nothing is permitted now; and what the operator knows of it

@@ -8,18 +8,13 @@
 #include <fmt/format.h>
 
 #include "core/base/math.h"
+#include "gcode/lower/lowering.h"
 
 namespace app {
 namespace {
 
 constexpr double same_place = 1e-6; // mm or degrees
 constexpr double full_turn = 1e-6;  // an arc that ends this close to its start, radians
-
-core::AxisValues axis_values(const double (&numbers)[core::axis_count]) {
-    core::AxisValues values;
-    std::copy(std::begin(numbers), std::end(numbers), values.begin());
-    return values;
-}
 
 bool is_near(const core::AxisValues& a, const core::AxisValues& b) {
     for (size_t i = 0; i < core::axis_count; ++i)
@@ -71,7 +66,7 @@ double distance_from_axis(const core::Vec3& point, const core::Vec3& centre, int
 
 /// The path of an arc to its end or, if it was stopped, to that place. `normal`: its axis, which
 /// the normal of the motion may point along or against.
-core::ArcPath arc_of(const feeler_segment& motion, int normal, const core::AxisValues& to) {
+core::ArcPath arc_of(const LiveMotion& motion, int normal, const core::AxisValues& to) {
     const core::Vec3 centre = vector_of(motion.centre);
     const core::Vec3 from = point_of(axis_values(motion.from)), end = point_of(to);
     const double whole = 2.0 * std::numbers::pi;
@@ -90,7 +85,7 @@ double distance_to_segment(const core::Vec3& point, const core::Vec3& a, const c
     return glm::length(point - (a + t * along));
 }
 
-core::PathModeChange path_mode_of(const feeler_segment& motion) {
+core::PathModeChange path_mode_of(const LiveMotion& motion) {
     core::PathModeChange mode;
     mode.blending = motion.blending == FEELER_EXACT_STOP   ? core::Blending::exact_stop
                     : motion.blending == FEELER_EXACT_PATH ? core::Blending::exact_path
@@ -106,13 +101,13 @@ core::PathModeChange path_mode_of(const feeler_segment& motion) {
 }
 
 /// The tool in the spindle; empty if there is none.
-std::optional<core::ToolNumber> tool_of(const feeler_segment& motion, const core::Setup& setup) {
+std::optional<core::ToolNumber> tool_of(const LiveMotion& motion, const core::Setup& setup) {
     const core::ToolNumber number{motion.tool};
     if (motion.tool == 0 && !setup.tools.contains(number)) return {};
     return number;
 }
 
-core::SpindleChange spindle_of(const feeler_segment& motion) {
+core::SpindleChange spindle_of(const LiveMotion& motion) {
     core::SpindleChange spindle;
     spindle.direction = motion.turns_on == 1   ? core::SpindleDirection::clockwise
                         : motion.turns_on == 2 ? core::SpindleDirection::counterclockwise
@@ -121,43 +116,58 @@ core::SpindleChange spindle_of(const feeler_segment& motion) {
     return spindle;
 }
 
-core::Motion line_of(const feeler_segment& motion, const core::Machine& machine) {
+} // namespace
+
+// What LinuxCNC does at corners is in the ring.
+LiveCheck::LiveCheck(const core::Setup& setup, ControlKinematics kinematics)
+    : judge_(setup), kinematics_(std::move(kinematics)) {}
+
+/// A straight motion between two places of the axes.
+core::Motion LiveCheck::line_of(const LiveMotion& motion, const core::AxisValues& from,
+                                const core::AxisValues& to) const {
     core::Motion line;
     line.kind = motion.purpose == FEELER_RAPID || motion.purpose == FEELER_TOOL_CHANGE
                         || motion.purpose == FEELER_INDEXER
                     ? core::MotionKind::rapid
                     : core::MotionKind::feed;
-    line.from = position_of(axis_values(motion.from), machine);
-    line.to = position_of(axis_values(motion.to), machine);
+    line.from = position_of(from, judge_.setup().machine);
+    line.to = position_of(to, judge_.setup().machine);
+    line.tip = kinematics_.tip_path(from, to, motion);
+    (line.tip ? line.tip->turn_error : line.turn_error) = motion.turn_error;
+    line.path_error = motion.path_error;
     line.style = core::RapidStyle::straight;
     line.stops_at_contact = motion.purpose == FEELER_PROBE;
     if (line.kind == core::MotionKind::feed) line.feed = 60.0 * motion.feed;
     return line;
 }
 
-} // namespace
-
-bool is_after_drop(const feeler_segment& motion) {
-    return motion.follows_part != 0 || motion.follows + 1 != motion.number;
+/// An arc of the tip, as seen from the work.
+void LiveCheck::add_chords(const LiveMotion& motion, const core::ArcPath& arc,
+                           std::vector<core::Event>& events) const {
+    constexpr double chord_error = 0.005; // mm
+    const auto normal = static_cast<size_t>(arc.normal);
+    const gcode::PlaneAxes axes{(normal + 1) % 3, (normal + 2) % 3, normal};
+    gcode::Position from, to;
+    std::copy(std::begin(motion.from), std::end(motion.from), from.begin());
+    std::copy(std::begin(motion.to), std::end(motion.to), to.begin());
+    const double centre[] = {motion.centre[axes.first], motion.centre[axes.second]};
+    const gcode::ArcChords chords =
+        gcode::chords_of_arc(from, to, axes, centre, arc.angle, chord_error);
+    core::AxisValues here = motion.axes_from;
+    for (const gcode::Position& end : chords.ends) {
+        const core::AxisValues there = kinematics_.axes_at(known_values(end), motion);
+        core::Motion chord = line_of(motion, here, there);
+        chord.kind = core::MotionKind::feed;
+        chord.feed = 60.0 * motion.feed;
+        chord.path_error += chords.error;
+        events.emplace_back(chord);
+        here = there;
+    }
 }
-
-feeler_segment in_mm(feeler_segment motion, double unit) {
-    const auto scale = [&](double& length) { length *= unit; };
-    for (double(*values)[core::axis_count] : {&motion.from, &motion.to, &motion.stopped_at})
-        for (size_t i = 0; i < core::axis_count; ++i)
-            if (!core::is_rotary(i)) scale((*values)[i]);
-    for (double& value : motion.centre) scale(value);
-    scale(motion.feed);
-    scale(motion.tolerance);
-    return motion;
-}
-
-// What LinuxCNC does at corners is in the ring.
-LiveCheck::LiveCheck(const core::Setup& setup) : judge_(setup) {}
 
 /// The tool, the spindle and the path mode, where the motion has others than the state, and the
 /// motion.
-std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
+std::vector<core::Event> LiveCheck::events_of(const LiveMotion& motion,
                                               const core::SimulatorState& state) const {
     std::vector<core::Event> events;
     const std::optional<core::ToolNumber> tool = tool_of(motion, judge_.setup());
@@ -167,21 +177,26 @@ std::vector<core::Event> LiveCheck::events_of(const feeler_segment& motion,
         events.emplace_back(spindle);
     events.emplace_back(path_mode_of(motion));
 
-    core::Motion there = line_of(motion, judge_.setup().machine);
+    core::Motion there = line_of(motion, motion.axes_from, motion.axes_to);
     if (motion.shape == FEELER_ARC) {
         const int normal = *main_axis(vector_of(motion.normal));
         const core::ArcPath arc = arc_of(motion, normal, axis_values(motion.to));
+        if (motion.follows_tip) {
+            add_chords(motion, arc, events);
+            return events;
+        }
         there.kind = core::MotionKind::arc;
         there.feed = 60.0 * motion.feed;
         there.arc = arc;
         // A spiral deviates from the arc about its centre by the difference of its radii.
-        there.path_error =
+        there.path_error +=
             std::abs(distance_from_axis(point_of(axis_values(motion.from)), arc.centre, normal)
                      - distance_from_axis(point_of(axis_values(motion.to)), arc.centre, normal));
     }
     events.emplace_back(there);
     if (motion.shape == FEELER_TAP) {
         std::swap(there.from, there.to);
+        if (there.tip) std::swap(there.tip->from, there.tip->to);
         events.emplace_back(there);
     }
     return events;
@@ -193,9 +208,12 @@ void LiveCheck::make(const Permitted& motion) {
 }
 
 /// Follows the cut of a motion that was stopped on its way.
-void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& stopped_at) {
-    feeler_segment part = motion;
+void LiveCheck::make_part(const LiveMotion& motion, const core::AxisValues& stopped_at) {
+    LiveMotion part = motion;
     std::copy(stopped_at.begin(), stopped_at.end(), std::begin(part.to));
+    part.axes_to = kinematics_.axes_at(stopped_at, motion);
+    // How far the tool turned where the path was left is not known, nor the place on an arc.
+    if (turns(motion) || (motion.follows_tip && motion.shape == FEELER_ARC)) return leave(part);
     const core::Vec3 from = point_of(axis_values(motion.from)),
                      to = point_of(axis_values(motion.to));
     const core::Vec3 there = point_of(stopped_at);
@@ -231,8 +249,8 @@ void LiveCheck::make_part(const feeler_segment& motion, const core::AxisValues& 
 }
 
 /// Notes where a motion was stopped, and takes nothing for cut.
-void LiveCheck::leave(const feeler_segment& part) {
-    put_at(*made_, position_of(axis_values(part.to), judge_.setup().machine));
+void LiveCheck::leave(const LiveMotion& part) {
+    put_at(*made_, position_of(part.axes_to, judge_.setup().machine));
     if (after_motion) after_motion(part);
 }
 
@@ -245,9 +263,8 @@ bool LiveCheck::catch_up(uint64_t begun, size_t most) {
 }
 
 /// Brings the state to the place where the motion begins.
-core::Result<void> LiveCheck::place(const feeler_segment& motion) {
-    const core::AxisValues from = axis_values(motion.from);
-    const core::AxisPosition position = position_of(from, judge_.setup().machine);
+core::Result<void> LiveCheck::place(const LiveMotion& motion) {
+    const core::AxisPosition position = position_of(motion.axes_from, judge_.setup().machine);
     if (!ahead_) {
         FEELER_TRY(core::SimulatorState state, core::start_of_run(judge_.setup(), position));
         state.is_assumed = {};
@@ -280,19 +297,21 @@ core::Result<void> LiveCheck::place(const feeler_segment& motion) {
 }
 
 /// Why a motion cannot be checked; or empty.
-std::string LiveCheck::objection(const feeler_segment& motion) const {
+std::string LiveCheck::objection(const LiveMotion& motion) const {
     const auto is_finite = [](double value) { return std::isfinite(value); };
     const auto are_finite = [&](const auto& values) {
         return std::all_of(std::begin(values), std::end(values), is_finite);
     };
     if (!are_finite(motion.from) || !are_finite(motion.to) || !are_finite(motion.centre)
         || !are_finite(motion.normal) || !is_finite(motion.feed) || !is_finite(motion.speed)
-        || !is_finite(motion.tolerance))
+        || !is_finite(motion.tolerance) || !are_finite(motion.axes_from)
+        || !are_finite(motion.axes_to))
         return "One of its values is not a number.";
+    if (!motion.problem.empty()) return motion.problem;
     if (motion.shape < FEELER_LINE || motion.shape > FEELER_TAP || motion.purpose < FEELER_RAPID
         || motion.purpose > FEELER_INDEXER || motion.blending > FEELER_BLENDED)
         return "It is of a kind that is not known.";
-    if (motion.blending == FEELER_BLENDED && motion.purpose != FEELER_RAPID
+    if (motion.blending == FEELER_BLENDED && (motion.purpose != FEELER_RAPID || turns(motion))
         && !(motion.tolerance > 0.0))
         return "How far its corners may be rounded is not known: it was queued before the guard "
                "ran.";
@@ -317,13 +336,13 @@ LiveAnswer LiveCheck::refused(LiveAnswer answer) {
     return answer;
 }
 
-LiveAnswer LiveCheck::permitted(const feeler_segment& queued, const feeler_segment& checked) {
+LiveAnswer LiveCheck::permitted(const LiveMotion& queued, const LiveMotion& checked) {
     waiting_.push_back({queued, checked});
     return {.may_move = true};
 }
 
 /// Brings the state to where a motion begins. Why it may not be judged at all; or empty.
-std::string LiveCheck::begin(const feeler_segment& motion) {
+std::string LiveCheck::begin(const LiveMotion& motion) {
     // It would begin where the motion that was refused ends.
     if (is_refused_ && !is_after_drop(motion)) return "A motion before it was refused.";
     if (std::string why = objection(motion); !why.empty()) return why;
@@ -333,10 +352,10 @@ std::string LiveCheck::begin(const feeler_segment& motion) {
 
 /// The motion with how far the corner at its start may be rounded: by the mode of the one before,
 /// if that is wider.
-feeler_segment LiveCheck::with_corner(feeler_segment motion) const {
+LiveMotion LiveCheck::with_corner(LiveMotion motion) const {
     const bool is_rapid = motion.purpose == FEELER_RAPID;
     if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0) return motion;
-    const feeler_segment& before = waiting_.back().queued;
+    const LiveMotion& before = waiting_.back().queued;
     if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID))
         return motion;
     // Rapids without a tolerance are rounded as far as speeds demand.
@@ -350,10 +369,10 @@ feeler_segment LiveCheck::with_corner(feeler_segment motion) const {
     return motion;
 }
 
-LiveAnswer LiveCheck::judge(const feeler_segment& queued) {
+LiveAnswer LiveCheck::judge(const LiveMotion& queued) {
     judge_.begin_retreat();
     if (std::string why = begin(queued); !why.empty()) return refused({.reason = std::move(why)});
-    const feeler_segment motion = with_corner(queued);
+    const LiveMotion motion = with_corner(queued);
     const std::vector<core::Event> events = events_of(motion, *ahead_);
     // The control does not know its tool when it starts.
     if (!tool_of(motion, judge_.setup())) {
@@ -367,7 +386,7 @@ LiveAnswer LiveCheck::judge(const feeler_segment& queued) {
     return answer.may_move ? permitted(queued, motion) : refused(std::move(answer));
 }
 
-LiveAnswer LiveCheck::judge_retreat(const feeler_segment& motion) {
+LiveAnswer LiveCheck::judge_retreat(const LiveMotion& motion) {
     if (std::string why = begin(motion); !why.empty()) return refused({.reason = std::move(why)});
     const std::vector<core::Event> events = events_of(motion, *ahead_);
     if (!tool_of(motion, judge_.setup())) {

@@ -7,33 +7,28 @@
 #include <string>
 #include <vector>
 
+#include "app/guard/live_motion.h"
 #include "app/guard/motion_judge.h"
-#include "assets/linuxcnc/feeler_tp/feeler_ring.h"
 #include "core/base/result.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 
 namespace app {
 
-/// The motion with lengths in mm, of a machine whose unit is this many mm.
-feeler_segment in_mm(feeler_segment motion, double unit);
-
-/// Whether the control has dropped motions before this one, so that it does not begin where the one
-/// with the number before it would end.
-bool is_after_drop(const feeler_segment& motion);
-
 /// Checks the motions of a running machine one by one, before they are made, against fixtures,
 /// machine bodies and the stock as it is cut. Bodies, bounds and rules are those of a check of the
 /// same motions in a program.
 ///
-/// Motions are those of the ring (feeler_ring.h), in mm and degrees, in their order.
+/// Motions are those of the ring (feeler_ring.h), in their order, as `kinematics` reads them.
 class LiveCheck {
 public:
-    explicit LiveCheck(const core::Setup& setup);
+    LiveCheck(const core::Setup& setup, ControlKinematics kinematics);
+
+    LiveMotion read(const feeler_segment& motion) const { return kinematics_.read(motion); }
 
     /// Checks the next motion. It may move only if it is proven clear and breaks no rule. After one
     /// that may not, none may until the control has dropped it: what follows would start elsewhere.
-    LiveAnswer judge(const feeler_segment& motion);
+    LiveAnswer judge(const LiveMotion& motion);
 
     /// As judge(), after a violation that the operator has not cleared: the motion may move if it
     /// loses no clearance, without cutting. All along it, no pair of bodies is nearer to each other
@@ -41,7 +36,7 @@ public:
     /// stays 10 mm apart and twice its allowance.
     /// Straight up it may leave the stock in any case: a guard that was started anew does not know
     /// what was cut.
-    LiveAnswer judge_retreat(const feeler_segment& motion);
+    LiveAnswer judge_retreat(const LiveMotion& motion);
 
     /// Whether the motions that the control has queued cannot move any more, after a refusal.
     bool is_refused() const { return is_refused_; }
@@ -50,7 +45,7 @@ public:
 
     /// Called with each motion that was made, once it is known that it was. One that was stopped on
     /// its way ends where it was stopped.
-    std::function<void(const feeler_segment&)> after_motion;
+    std::function<void(const LiveMotion&)> after_motion;
 
     /// Follows the cuts of motions before number `begun`, which have been made; at most `most` at a
     /// time. To be called when there is nothing to judge. Whether some are left.
@@ -58,22 +53,27 @@ public:
 
 private:
     struct Permitted {
-        feeler_segment queued, checked; // as the control has queued it, and with_corner()
+        LiveMotion queued, checked; // as the control has queued it, and with_corner()
     };
 
-    std::string begin(const feeler_segment& motion);
-    core::Result<void> place(const feeler_segment& motion);
+    std::string begin(const LiveMotion& motion);
+    core::Result<void> place(const LiveMotion& motion);
     void make(const Permitted& motion);
-    void leave(const feeler_segment& part);
-    void make_part(const feeler_segment& motion, const core::AxisValues& stopped_at);
-    std::string objection(const feeler_segment& motion) const;
-    std::vector<core::Event> events_of(const feeler_segment& motion,
+    void leave(const LiveMotion& part);
+    void make_part(const LiveMotion& motion, const core::AxisValues& stopped_at);
+    std::string objection(const LiveMotion& motion) const;
+    std::vector<core::Event> events_of(const LiveMotion& motion,
                                        const core::SimulatorState& state) const;
-    feeler_segment with_corner(feeler_segment motion) const;
-    LiveAnswer permitted(const feeler_segment& queued, const feeler_segment& checked);
+    core::Motion line_of(const LiveMotion& motion, const core::AxisValues& from,
+                         const core::AxisValues& to) const;
+    void add_chords(const LiveMotion& motion, const core::ArcPath& arc,
+                    std::vector<core::Event>& events) const;
+    LiveMotion with_corner(LiveMotion motion) const;
+    LiveAnswer permitted(const LiveMotion& queued, const LiveMotion& checked);
     LiveAnswer refused(LiveAnswer answer);
 
     MotionJudge judge_;
+    ControlKinematics kinematics_;
     std::optional<core::SimulatorState> ahead_; // after all motions that may move
     std::optional<core::SimulatorState> made_;  // after those that have been made
     std::deque<Permitted> waiting_;             // what is in `ahead_` and not in `made_`

@@ -1,6 +1,6 @@
 #include "app/guard/live_setup.h"
 
-#include "app/setup/program_settings.h"
+#include "app/setup/setup_file.h"
 
 namespace app {
 
@@ -20,13 +20,6 @@ std::string why_incomplete(const SetupFile& setup, std::string_view who) {
     if (!setup.offsets_of_bodies.empty())
         return lacks("the place of its bodies: they stand in a work offset that it does not state");
     return {};
-}
-
-core::Result<SetupFile> read_live_setup(const std::string& path, std::string_view who) {
-    FEELER_TRY(SetupFile setup, read_setup(path, {}));
-    if (std::string why = why_incomplete(setup, who); !why.empty())
-        return core::fail_file(path, std::move(why));
-    return setup;
 }
 
 } // namespace app

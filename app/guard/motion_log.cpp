@@ -31,15 +31,18 @@ double plain(double value) { return std::abs(value) < 5e-7 ? 0.0 : value; }
 struct MotionLog::State {
     std::ofstream file;
     core::AxisValues origin{}; // of the program's coordinates, in machine coordinates
-    std::optional<feeler_segment> last, refused;
+    std::optional<gcode::SwitchableKinematics> kinematics;
+    double length = 0.0; // that is in use, mm
+    std::optional<LiveMotion> last, refused;
     std::string reason; // of `refused`
 
     std::string axis_words(const double (&values)[core::axis_count],
                            const double (&from)[core::axis_count], bool all) const;
-    void write(const feeler_segment& motion);
+    void write(const LiveMotion& motion);
     void write_refusal();
-    void write_modes(const feeler_segment& motion);
-    void write_motion(const feeler_segment& motion);
+    void write_kinematics(const LiveMotion& motion);
+    void write_modes(const LiveMotion& motion);
+    void write_motion(const LiveMotion& motion);
 };
 
 /// The words of axes that move, or of X, Y and Z in any case.
@@ -48,12 +51,50 @@ std::string MotionLog::State::axis_words(const double (&values)[core::axis_count
     std::string words;
     for (size_t i = 0; i < core::axis_count; ++i)
         if (values[i] != from[i] || (all && i < 3))
-            words += fmt::format(" {}{:.6f}", core::axis_letters[i], plain(values[i] - origin[i]));
+            words += fmt::format(" {}{:.6f}", core::axis_letters[i],
+                                 plain(values[i] - origin[i] - (i == 2 ? length : 0.0)));
     return words;
 }
 
+/// The kinematics of LinuxCNC and the length offset that they use, where they have changed.
+void MotionLog::State::write_kinematics(const LiveMotion& motion) {
+    if (!kinematics) return;
+    using Type = gcode::SwitchableKinematics::Type;
+    const auto& types = kinematics->types;
+    const auto is_tip = [](Type type) { return type == Type::tip; };
+    const bool was_tip = last ? last->follows_tip : !types.empty() && is_tip(types.front());
+    const double needed = motion.follows_tip ? motion.tool_length : 0.0;
+    if (last && was_tip == motion.follows_tip && needed == length) return;
+    const auto select = [&](Type type) {
+        const auto number = std::find(types.begin(), types.end(), type) - types.begin();
+        if (kinematics->output)
+            file << fmt::format("M68 E{} Q{}\nM66 E0 L0\n", *kinematics->output, number);
+        else if (is_tip(type) != is_tip(types.front()))
+            file << comment_of("LinuxCNC uses other kinematics here: the ini file does not say how "
+                               "they are selected")
+                 << "\n";
+    };
+    // The length only changes where that moves nothing.
+    if (needed != length) {
+        if (was_tip) select(Type::axes);
+        file << (needed == 0.0 ? "G49\n" : fmt::format("G43.1 Z{:.6f}\n", needed));
+        if (motion.follows_tip) select(Type::tip);
+    } else if (was_tip != motion.follows_tip) {
+        select(motion.follows_tip ? Type::tip : Type::axes);
+    }
+    length = needed;
+    constexpr double same_place = 1e-6; // mm or degrees
+    const auto is_same = [](double a, double b) { return std::abs(a - b) <= same_place; };
+    if (!last
+        || !std::equal(last->axes_to.begin(), last->axes_to.end(), motion.axes_from.begin(),
+                       is_same))
+        return;
+    // As the new kinematics count it.
+    std::copy(std::begin(motion.from), std::end(motion.from), std::begin(last->to));
+}
+
 /// Tool, spindle and path mode, where they have changed.
-void MotionLog::State::write_modes(const feeler_segment& motion) {
+void MotionLog::State::write_modes(const LiveMotion& motion) {
     if (!last || last->tool != motion.tool)
         if (motion.tool >= 0) file << fmt::format("M61 Q{}\n", motion.tool);
     if (!last || last->turns_on != motion.turns_on || last->speed != motion.speed) {
@@ -74,7 +115,7 @@ void MotionLog::State::write_modes(const feeler_segment& motion) {
         file << "G64\n";
 }
 
-void MotionLog::State::write_motion(const feeler_segment& motion) {
+void MotionLog::State::write_motion(const LiveMotion& motion) {
     const bool is_placed =
         last && std::equal(std::begin(last->to), std::end(last->to), std::begin(motion.from));
     if (!is_placed) {
@@ -105,8 +146,9 @@ void MotionLog::State::write_motion(const feeler_segment& motion) {
     }
     file << fmt::format(" (line {})\n", motion.line);
     last = motion;
-    if (motion.shape == FEELER_TAP)
-        std::copy(std::begin(motion.from), std::end(motion.from), std::begin(last->to));
+    if (motion.shape != FEELER_TAP) return;
+    std::copy(std::begin(motion.from), std::end(motion.from), std::begin(last->to));
+    last->axes_to = last->axes_from;
 }
 
 MotionLog::MotionLog(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -116,6 +158,7 @@ MotionLog::~MotionLog() {
     if (!state_) return;
     if (state_->refused) {
         state_->write_refusal();
+        state_->write_kinematics(*state_->refused);
         state_->write_modes(*state_->refused);
         state_->write_motion(*state_->refused);
     }
@@ -127,6 +170,7 @@ core::Result<MotionLog> MotionLog::begin(const std::string& path, const SetupFil
         setup.offsets_set.empty() ? 0 : static_cast<size_t>(*setup.offsets_set.begin());
     auto state = std::make_unique<State>();
     state->origin = setup.environment.work_offset(offset);
+    state->kinematics = setup.environment.kinematics;
     state->file.open(path, std::ios::binary | std::ios::trunc);
     state->file << comment_of("motions of the machine, recorded by feeler guard") << "\n"
                 << comment_of("set-up: " + setup.path) << "\n"
@@ -141,18 +185,19 @@ void MotionLog::State::write_refusal() {
     if (refused) file << comment_of("refused, not made: " + reason) << "\n";
 }
 
-void MotionLog::State::write(const feeler_segment& motion) {
+void MotionLog::State::write(const LiveMotion& motion) {
     if (refused && motion.number > refused->number) {
         write_refusal();
         refused.reset();
     }
+    write_kinematics(motion);
     write_modes(motion);
     write_motion(motion);
 }
 
-void MotionLog::add(const feeler_segment& motion) { state_->write(motion); }
+void MotionLog::add(const LiveMotion& motion) { state_->write(motion); }
 
-void MotionLog::add_refused(const feeler_segment& motion, const std::string& reason) {
+void MotionLog::add_refused(const LiveMotion& motion, const std::string& reason) {
     state_->write_refusal();
     state_->refused = motion;
     state_->reason = reason;

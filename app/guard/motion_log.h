@@ -12,7 +12,8 @@ struct SetupFile;
 
 /// Writes what a machine did as a program for LinuxCNC, which every command of feeler reads with
 /// the set-up of the machine: feeler view shows the motions again. Its coordinates are those of the
-/// first work offset that the set-up states, without length offsets.
+/// first work offset that the set-up states, without length offsets but where the control follows
+/// the tip.
 ///
 /// The last motion may be one that was refused, which the machine did not make.
 class MotionLog {
@@ -27,10 +28,10 @@ public:
     ~MotionLog();
 
     /// Adds a motion, in mm.
-    void add(const feeler_segment& motion);
+    void add(const LiveMotion& motion);
     /// Notes a motion that was refused, with the reason. It is written as a comment once the
     /// motions before it are there, and as the last motion if the log ends with it.
-    void add_refused(const feeler_segment& motion, const std::string& reason);
+    void add_refused(const LiveMotion& motion, const std::string& reason);
     /// Writes to the disk what is there.
     void flush();
     /// Whether everything so far could be written, for example because the disk is full. The guard

@@ -371,13 +371,17 @@ bool are_same(const core::Machine& a, const core::Machine& b) {
 
 } // namespace
 
+bool has_axes_of_kinematics(const core::Machine& machine, const gcode::Environment& environment) {
+    return are_same(machine, *environment.kinematics->machine);
+}
+
 std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& environment) {
     if (!environment.kinematics || !environment.kinematics->machine) return {};
     const core::Machine& known = *environment.kinematics->machine;
     const std::string& module = environment.kinematics->module;
     const std::string about_w = check_quill(machine, known, environment);
     if (machine.has_rotary()) {
-        if (are_same(machine, known)) return about_w;
+        if (has_axes_of_kinematics(machine, environment)) return about_w;
         return fmt::format("the rotary axes of the set-up are not where {} of the ini file has "
                            "them: the control is assumed to know those of the set-up",
                            module);

@@ -58,6 +58,10 @@ gcode::ToolChangeMotion tool_change_motion(const IniFile& ini, gcode::LengthUnit
 /// Result: a note for the user if the machine has other ones; else empty.
 std::string take_rotary_axes(core::Machine& machine, const gcode::Environment& environment);
 
+/// Whether a machine puts the tool and the work as the kinematics of an environment do, which must
+/// be known.
+bool has_axes_of_kinematics(const core::Machine& machine, const gcode::Environment& environment);
+
 /// take_rotary_axes, and adds limits, speeds, accelerations and homes from a LinuxCNC ini file to
 /// axes of a machine that lack them: from [AXIS_X], or [AXIS_0] of older files, and [JOINT_0] of a
 /// machine whose joints are its axes, in the order X Y Z A B C U V W.

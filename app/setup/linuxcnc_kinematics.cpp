@@ -21,12 +21,20 @@ using Type = gcode::SwitchableKinematics::Type;
 /// Values of the pins of a module.
 class Pins {
 public:
+    /// `unit`: mm per unit of the machine's lengths.
     Pins(std::string prefix, const HalSettings& hal,
-         const std::map<std::string, std::optional<double>, std::less<>>& stated,
+         const std::map<std::string, std::optional<double>, std::less<>>& stated, double unit,
          std::string without = {})
-        : prefix_(std::move(prefix)), hal_(hal), stated_(stated), without_(std::move(without)) {}
+        : prefix_(std::move(prefix)),
+          hal_(hal),
+          stated_(stated),
+          unit_(unit),
+          without_(std::move(without)) {}
 
-    double operator()(const char* name) {
+    /// A length, mm.
+    double operator()(const char* name) { return unit_ * plain(name); }
+    /// An angle or a switch.
+    double plain(const char* name) {
         const std::string pin = prefix_ + "." + name;
         const auto known = stated_.find("_hal[" + pin + "]");
         if (known != stated_.end() && known->second) return *known->second;
@@ -41,6 +49,7 @@ private:
     std::string prefix_;
     const HalSettings& hal_;
     const std::map<std::string, std::optional<double>, std::less<>>& stated_;
+    double unit_ = 1.0;
     std::string without_;
     std::vector<std::string> unknown_;
 };
@@ -70,7 +79,7 @@ struct Module {
 
 core::Machine table_tilting_about_x(Pins& pin) {
     const Vec3 at(pin("x-rot-point"), pin("y-rot-point"), pin("z-rot-point"));
-    const double sense = pin("conventional-directions") != 0.0 ? 1.0 : -1.0;
+    const double sense = pin.plain("conventional-directions") != 0.0 ? 1.0 : -1.0;
     Chain chain;
     chain.add('A', Side::table, {sense, 0.0, 0.0},
               at + Vec3(0.0, pin("y-offset"), pin("z-offset")));
@@ -80,7 +89,7 @@ core::Machine table_tilting_about_x(Pins& pin) {
 
 core::Machine table_tilting_about_y(Pins& pin) {
     const Vec3 at(pin("x-rot-point"), pin("y-rot-point"), pin("z-rot-point"));
-    const double sense = pin("conventional-directions") != 0.0 ? 1.0 : -1.0;
+    const double sense = pin.plain("conventional-directions") != 0.0 ? 1.0 : -1.0;
     Chain chain;
     chain.add('B', Side::table, {0.0, sense, 0.0},
               at + Vec3(pin("x-offset"), 0.0, pin("z-offset")));
@@ -97,7 +106,7 @@ core::Machine two_rotary_tables(Pins& pin) {
 }
 
 core::Machine head_on_head(Pins& pin) {
-    const double sense = pin("conventional-directions") != 0.0 ? 1.0 : -1.0;
+    const double sense = pin.plain("conventional-directions") != 0.0 ? 1.0 : -1.0;
     Chain chain;
     chain.add('C', Side::tool, {0.0, 0.0, 1.0}, Vec3(0.0));
     chain.add('B', Side::tool, {0.0, sense, 0.0}, {0.0, 0.0, pin("pivot-length")});
@@ -110,7 +119,7 @@ core::Machine head_on_head(Pins& pin) {
 }
 
 core::Machine nutating_head_and_table_about_x(Pins& pin) {
-    const double angle = core::radians_of(pin("nut-angle"));
+    const double angle = core::radians_of(pin.plain("nut-angle"));
     const Vec3 pivot(0.0, pin("y-pivot"), pin("z-pivot"));
     Chain chain;
     chain.add('A', Side::table, {1.0, 0.0, 0.0}, {0.0, pin("y-rot-axis"), pin("z-rot-axis")});
@@ -121,7 +130,7 @@ core::Machine nutating_head_and_table_about_x(Pins& pin) {
 }
 
 core::Machine nutating_head_and_table_about_y(Pins& pin) {
-    const double angle = core::radians_of(pin("nut-angle"));
+    const double angle = core::radians_of(pin.plain("nut-angle"));
     const Vec3 pivot(pin("x-pivot"), 0.0, pin("z-pivot"));
     Chain chain;
     chain.add('B', Side::table, {0.0, 1.0, 0.0}, {pin("x-rot-axis"), 0.0, pin("z-rot-axis")});
@@ -222,7 +231,8 @@ bool is_known_kinematics(const std::string& module) { return module_named(module
 
 std::optional<LinuxcncKinematics>
 linuxcnc_kinematics(const std::string& module, const std::string& settings, const HalSettings& hal,
-                    const std::map<std::string, std::optional<double>, std::less<>>& stated) {
+                    const std::map<std::string, std::optional<double>, std::less<>>& stated,
+                    double unit) {
     const Module* const found = module_named(module);
     if (!found) return std::nullopt;
 
@@ -237,7 +247,7 @@ linuxcnc_kinematics(const std::string& module, const std::string& settings, cons
     if (switches.coordinates.empty()) switches.coordinates = found->coordinates;
 
     const std::string length_pin = fmt::format("{}.{}", found->pins, found->tool_length);
-    Pins pins(std::string(found->pins), hal, stated, "motion.tooloffset.z");
+    Pins pins(std::string(found->pins), hal, stated, unit, "motion.tooloffset.z");
     core::Machine machine = found->machine(pins);
     if (!hal.is_fed_by(length_pin, "motion.tooloffset.z"))
         result.notes.push_back(fmt::format(

@@ -26,11 +26,13 @@ bool is_known_kinematics(const std::string& module);
 /// `settings`: the value of KINEMATICS after the name of the module, such as sparm=identityfirst.
 /// `stated`: values of pins that the user states, by names such as _hal[5axiskins.pivot-length];
 ///           they count more than the HAL commands.
+/// `unit`: mm per unit of the machine's lengths, in which the pins are.
 ///
 /// Source: LinuxCNC 2.9, src/emc/kinematics/trtfuncs.c and 5axiskins.c, src/hal/components:
 ///         xyzab_tdr_kins.comp, xyzacb_trsrn.comp, xyzbca_trsrn.comp.
 std::optional<LinuxcncKinematics>
 linuxcnc_kinematics(const std::string& module, const std::string& settings, const HalSettings& hal,
-                    const std::map<std::string, std::optional<double>, std::less<>>& stated);
+                    const std::map<std::string, std::optional<double>, std::less<>>& stated,
+                    double unit = 1.0);
 
 } // namespace app

@@ -73,8 +73,10 @@ void take_kinematics(const IniFile& ini, const ProgramSettings& settings,
             fmt::format("{}: REMAP of {} is ignored, because it has more than ngc=: the "
                         "code counts as LinuxCNC's own",
                         settings.ini, code));
+    const gcode::LengthUnit unit =
+        settings.machine_unit.value_or(ini.machine_unit.value_or(environment.machine_unit));
     auto kinematics = linuxcnc_kinematics(ini.kinematics, ini.kinematics_settings, ini.hal,
-                                          settings.named_values);
+                                          settings.named_values, gcode::to_mm(1.0, unit));
     if (!kinematics) return;
     if (!ini.coordinates.empty()
         && ini.kinematics_settings.find("coordinates=") == std::string::npos)
@@ -127,8 +129,10 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
                                     "axes, it turns with the others instead of before them",
                                     settings.ini, ini.locking_indexers));
     stated.machine_unit = ini.machine_unit;
-    stated.parameters = existing(ini.parameters, settings, notes);
-    stated.tool_table = existing(ini.tool_table, settings, notes);
+    if (!settings.ignores_tables) {
+        stated.parameters = existing(ini.parameters, settings, notes);
+        stated.tool_table = existing(ini.tool_table, settings, notes);
+    }
     stated.search_path = ini.search_path;
     environment.startup_code = ini.startup_code;
     environment.wrapped_axes = ini.wrapped_axes;
@@ -160,6 +164,7 @@ ProgramSettings overlaid(ProgramSettings settings, const ProgramSettings& over) 
     replace(settings.ini, over.ini);
     replace(settings.parameters, over.parameters);
     replace(settings.tool_table, over.tool_table);
+    settings.ignores_tables = settings.ignores_tables || over.ignores_tables;
     replace(settings.search_path, over.search_path);
     replace(settings.machine_codes, over.machine_codes);
     replace(settings.tool_at_start, over.tool_at_start);

@@ -33,6 +33,7 @@ struct ProgramSettings {
     std::optional<uint64_t> max_blocks;
     std::optional<bool> counts_smallest_steps; // Fanuc, Haas: X1000 is 1 mm
     std::string ini, parameters, tool_table;   // paths
+    bool ignores_tables = false;               // those that the ini file names: variables and tools
     std::vector<std::string> search_path;
     std::set<int> machine_codes; // M codes of the machine builder
     std::optional<core::ToolNumber> tool_at_start;

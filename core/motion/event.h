@@ -94,10 +94,11 @@ enum class RapidStyle : uint8_t { straight, dogleg, independent };
 struct Motion {
     MotionKind kind = MotionKind::rapid;
     AxisPosition from, to;
-    std::optional<ArcPath> arc = {};      // when kind is arc; both ends known then
-    std::optional<TipPath> tip = {};      // when the control follows the tip; both ends known then
-    double path_error = 0.0;              // mm: the path may be this far from the stated one
-    double feed = 0.0;                    // mm/min along the path; 0 on rapids
+    std::optional<ArcPath> arc = {}; // when kind is arc; both ends known then
+    std::optional<TipPath> tip = {}; // when the control follows the tip; both ends known then
+    double path_error = 0.0;         // mm: the path may be this far from the stated one
+    double turn_error = 0.0; // radians: the rotary axes may in all be this far from the stated ones
+    double feed = 0.0;       // mm/min along the path; 0 on rapids
     std::optional<RapidStyle> style = {}; // of a rapid; empty: that of the machine
     bool stops_at_contact = false; // a probing move: it ends between its first contact and `to`
     // Axes that reach `to` wherever the motion starts. After a probing move, the others end as far

@@ -356,6 +356,7 @@ Path path_of(const Motion& motion, const Machine& machine, double max_error) {
     for (Leg& leg : path.legs) {
         leg.path_error += motion.path_error;
         leg.lasting_error += motion.path_error;
+        leg.turn_error += motion.turn_error;
     }
     return path;
 }

@@ -69,48 +69,6 @@ core::ArcPath arc_path(const ArcFeed& command, const Offsets& offsets, ArcAxis a
     return path;
 }
 
-/// Chords that approximate an arc, in program coordinates.
-struct Chords {
-    std::vector<Position> ends;
-    double error = 0.0; // largest distance of a chord from the arc, mm
-};
-
-/// About as many chords as their error needs to be `chord_error`.
-Chords chords_of(const ArcFeed& command, const Position& from) {
-    const PlaneAxes axes = axes_of(command.plane);
-    const double angle = angle_of(command, from);
-    const double u = *from[axes.first] - command.centre[0];
-    const double v = *from[axes.second] - command.centre[1];
-    const double radius = core::hypot(u, v);
-    const double end_radius = core::hypot(*command.end[axes.first] - command.centre[0],
-                                          *command.end[axes.second] - command.centre[1]);
-    const double step = std::sqrt(8.0 * chord_error / std::max({radius, end_radius, chord_error}));
-    const int count = std::clamp(static_cast<int>(std::abs(angle) / step) + 1, 1, 100000);
-    // An eighth of the second derivative by the angle, times the square of the step; 1 % for
-    // rounding.
-    const double drift = angle != 0.0 ? 2.0 * (end_radius - radius) / angle : 0.0;
-    const double turned = angle / count;
-    Chords chords;
-    chords.error =
-        1.01 * 0.125 * core::hypot(std::max(radius, end_radius), drift) * turned * turned;
-    for (int i = 1; i < count; ++i) {
-        const double fraction = static_cast<double>(i) / count;
-        const double turn = angle * fraction;
-        const double reach = (radius + fraction * (end_radius - radius)) / radius;
-        Position position = command.end;
-        for (size_t axis = 0; axis < axis_count; ++axis)
-            if (from[axis] && position[axis])
-                *position[axis] = *from[axis] + fraction * (*command.end[axis] - *from[axis]);
-        position[axes.first] =
-            command.centre[0] + reach * (u * core::cos(turn) - v * core::sin(turn));
-        position[axes.second] =
-            command.centre[1] + reach * (u * core::sin(turn) + v * core::cos(turn));
-        chords.ends.push_back(position);
-    }
-    chords.ends.push_back(command.end);
-    return chords;
-}
-
 /// The factor by which distances in program coordinates grow at most in those of the machine.
 double largest_scale(const Offsets& offsets) {
     if (!offsets.has_frame) return 1.0;
@@ -248,7 +206,8 @@ struct Visitor {
             is_known(from) && is_known(command.end) && from[axes.first] && from[axes.second];
         const auto axis = arc_axis(lowering.offsets, axes);
         if (known && !axis) {
-            const Chords chords = chords_of(command, from);
+            const ArcChords chords = chords_of_arc(from, command.end, axes, command.centre,
+                                                   angle_of(command, from), chord_error);
             for (const Position& end : chords.ends) {
                 core::Motion chord = motion_to(end, core::MotionKind::feed, command.feed);
                 chord.path_error = chords.error * largest_scale(lowering.offsets);
@@ -320,6 +279,38 @@ struct Visitor {
 };
 
 } // namespace
+
+ArcChords chords_of_arc(const Position& from, const Position& end, const PlaneAxes& axes,
+                        const double (&centre)[2], double angle, double chord_error) {
+    const double u = *from[axes.first] - centre[0];
+    const double v = *from[axes.second] - centre[1];
+    const double radius = core::hypot(u, v);
+    const double end_radius =
+        core::hypot(*end[axes.first] - centre[0], *end[axes.second] - centre[1]);
+    const double step = std::sqrt(8.0 * chord_error / std::max({radius, end_radius, chord_error}));
+    const int count = std::clamp(static_cast<int>(std::abs(angle) / step) + 1, 1, 100000);
+    // An eighth of the second derivative by the angle, times the square of the step; 1 % for
+    // rounding.
+    const double drift = angle != 0.0 ? 2.0 * (end_radius - radius) / angle : 0.0;
+    const double turned = angle / count;
+    ArcChords chords;
+    chords.error =
+        1.01 * 0.125 * core::hypot(std::max(radius, end_radius), drift) * turned * turned;
+    for (int i = 1; i < count; ++i) {
+        const double fraction = static_cast<double>(i) / count;
+        const double turn = angle * fraction;
+        const double reach = (radius + fraction * (end_radius - radius)) / radius;
+        Position position = end;
+        for (size_t axis = 0; axis < axis_count; ++axis)
+            if (from[axis] && position[axis])
+                *position[axis] = *from[axis] + fraction * (*end[axis] - *from[axis]);
+        position[axes.first] = centre[0] + reach * (u * core::cos(turn) - v * core::sin(turn));
+        position[axes.second] = centre[1] + reach * (u * core::sin(turn) + v * core::cos(turn));
+        chords.ends.push_back(position);
+    }
+    chords.ends.push_back(end);
+    return chords;
+}
 
 std::vector<core::Event> Lowering::lower(const CanonicalCommand& command, core::AxisSet settles) {
     Visitor visitor{*this, settles, {}};

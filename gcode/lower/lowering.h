@@ -7,6 +7,18 @@
 
 namespace gcode {
 
+/// Straight motions in place of an arc, each even in all axes.
+struct ArcChords {
+    std::vector<Position> ends;
+    double error = 0.0; // largest distance of one of them from the arc, mm
+};
+
+/// About as many chords as an error of `chord_error` needs. The arc begins at `from` and turns by
+/// `angle`, positive from the plane's first axis towards its second, about a centre along these
+/// axes; in the same coordinates. A radius that changes does so evenly.
+ArcChords chords_of_arc(const Position& from, const Position& end, const PlaneAxes& axes,
+                        const double (&centre)[2], double angle, double chord_error);
+
 /// Turns canonical commands into motions of the machine. A plain value: the position of the machine
 /// and the active offsets before the next command.
 struct Lowering {

@@ -128,6 +128,7 @@ public:
         std::copy(std::begin(stopped_at), std::end(stopped_at), std::begin(motion.stopped_at));
         std::copy(std::begin(goal), std::end(goal), std::begin(motion.from));
         motion.line = static_cast<int32_t>(number);
+        if (ask_kinematics) ask_kinematics(motion);
         ring->segment[number % FEELER_RING_SEGMENTS] = motion;
         if (motion.shape != FEELER_TAP)
             std::copy(std::begin(motion.to), std::end(motion.to), std::begin(goal));
@@ -174,6 +175,7 @@ public:
 
     std::unique_ptr<feeler_ring> ring = std::make_unique<feeler_ring>();
     feeler_segment next{}; // what the next motion has besides its path
+    std::function<void(feeler_segment&)> ask_kinematics;
     double goal[9] = {};
     double stopped_at[9] = {};
     std::optional<uint64_t> follows;
@@ -973,11 +975,44 @@ TEST(LiveControl, ReadsTheStatus) {
         EXPECT_FALSE(app::read_control_state(bad).has_value()) << bad;
 }
 
-/// A program of random lines and arcs, and the same motions as LinuxCNC queues them.
+/// A table that tilts about X and turns about Z, as LinuxCNC's xyzac-trt-kins has it.
+const std::string five_axes_ini = R"([KINS]
+KINEMATICS = xyzac-trt-kins sparm=identityfirst
+[TRAJ]
+COORDINATES = XYZAC
+[HAL]
+HALCMD = net select motion.analog-out-03 => motion.switchkins-type
+HALCMD = net length motion.tooloffset.z => xyzac-trt-kins.tool-offset
+HALCMD = setp xyzac-trt-kins.x-rot-point 10
+HALCMD = setp xyzac-trt-kins.y-rot-point -5
+HALCMD = setp xyzac-trt-kins.z-rot-point -250
+HALCMD = setp xyzac-trt-kins.y-offset 20
+HALCMD = setp xyzac-trt-kins.z-offset 15
+)";
+
+/// Its joints, by the formulas of LinuxCNC's trtfuncs.c, at a part of the way of a motion.
+void find_joints(const feeler_segment& motion, double part, double (&joint)[FEELER_JOINTS]) {
+    double at[9];
+    for (size_t i = 0; i < 9; ++i) at[i] = motion.from[i] + part * (motion.to[i] - motion.from[i]);
+    const double a = at[3] * std::numbers::pi / 180.0, c = at[5] * std::numbers::pi / 180.0;
+    const double dy = 20.0, dz = 15.0 + motion.tool_length;
+    const double x = at[0] - 10.0, y = at[1] + 5.0, z = at[2] + 250.0;
+    const double q = std::sin(c) * x + std::cos(c) * y - dy, r = z - dz;
+    joint[0] = std::cos(c) * x - std::sin(c) * y + 10.0;
+    joint[1] = std::cos(a) * q - std::sin(a) * r + dy - 5.0;
+    joint[2] = std::sin(a) * q + std::cos(a) * r + dz - 250.0;
+    joint[3] = at[3];
+    joint[4] = at[5];
+}
+
+/// A program of random lines and arcs, and the same motions as LinuxCNC queues them; of the tip of
+/// a tool on a table that turns, if `turns`.
 struct RandomMotions {
-    explicit RandomMotions(uint32_t seed) : random(seed) {
+    explicit RandomMotions(uint32_t seed, bool turns_work = false)
+        : random(seed), turns(turns_work) {
         program = "G21 G90 G17 G54 G61.1\nM61 Q1\nG43 H1\nM3 S1000\n";
         machine.next.turns_on = 1;
+        if (turns) follow_tip();
         const double start[] = {-60.0, 0.0, 40.0};
         move_to(start, true);
         for (int i = 0; i < 40; ++i) add();
@@ -989,9 +1024,32 @@ struct RandomMotions {
     }
     bool chance(double share) { return between(0, 1) < share; }
 
+    void follow_tip() {
+        program += "M68 E3 Q1\nM66 E0 L0\n";
+        machine.next.tool_length = 100.0;
+        machine.ask_kinematics = [](feeler_segment& motion) {
+            motion.joints = 5;
+            find_joints(motion, 0.0, motion.joint_from);
+            find_joints(motion, FEELER_BETWEEN, motion.joint_between);
+            find_joints(motion, 1.0, motion.joint_to);
+        };
+    }
+
+    /// Turns the table in the next motion, sometimes. The words for that.
+    std::string turn() {
+        std::string words;
+        if (!turns || program.size() < 100) return words;
+        for (const auto& [axis, most] : {std::pair{3, 40.0}, std::pair{5, 200.0}})
+            if (chance(0.4)) {
+                machine.next.to[axis] = round6(between(-most, most));
+                words += fmt::format(" {}{:.6f}", axis == 3 ? 'A' : 'C', machine.next.to[axis]);
+            }
+        return words;
+    }
+
     void move_to(const double (&to)[3], bool is_rapid) {
-        program += fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}{}\n", is_rapid ? "G0" : "G1", to[0],
-                               to[1], to[2], is_rapid ? "" : " F600");
+        program += fmt::format("{} X{:.6f} Y{:.6f} Z{:.6f}{}{}\n", is_rapid ? "G0" : "G1", to[0],
+                               to[1], to[2], turn(), is_rapid ? "" : " F600");
         machine.line(to[0], to[1], to[2], is_rapid ? FEELER_RAPID : FEELER_FEED);
         std::copy(std::begin(to), std::end(to), std::begin(at));
     }
@@ -1013,21 +1071,22 @@ struct RandomMotions {
             to[v] = round6(centre[v] + radius * std::sin(angle));
         }
         to[normal] = round6(to[normal] + between(-2, 3));
-        const int turns = chance(0.2) ? 2 : 1;
+        const int rounds = chance(0.2) ? 2 : 1;
         const char* const planes[] = {"G19", "G18", "G17"};
         // The third axis of G18 counts its angle from Z to X, as here.
         program += fmt::format("{} {} X{:.6f} Y{:.6f} Z{:.6f}", planes[normal],
                                is_clockwise ? "G2" : "G3", to[0], to[1], to[2]);
         for (const int axis : {u, v})
             program += fmt::format(" {}{:.6f}", "IJK"[axis], centre[axis] - at[axis]);
-        program += turns > 1 ? fmt::format(" P{} F600\n", turns) : " F600\n";
+        program += turn();
+        program += rounds > 1 ? fmt::format(" P{} F600\n", rounds) : " F600\n";
 
         feeler_segment motion = machine.next;
         motion.shape = FEELER_ARC;
         motion.purpose = FEELER_CURVE;
         // Clockwise about an axis is counterclockwise about its opposite.
         const bool is_reversed = chance(0.5);
-        motion.turns = is_clockwise != is_reversed ? -turns : turns - 1;
+        motion.turns = is_clockwise != is_reversed ? -rounds : rounds - 1;
         motion.normal[normal] = is_reversed ? -1.0 : 1.0;
         for (int i = 0; i < 3; ++i) {
             motion.to[i] = to[i] + (i == 2 ? tip : 0.0);
@@ -1047,10 +1106,32 @@ struct RandomMotions {
     }
 
     std::mt19937 random;
+    bool turns;
     Machine machine;
     std::string program;
     double at[3] = {};
 };
+
+/// How many motions of a program come before the first one that a check does not call clear.
+uint64_t clear_motions(const std::string& program, const std::string& setup) {
+    app::CheckJob job;
+    job.program = program;
+    job.setup = setup;
+    job.detail = core::Detail::every_pair;
+    const auto run = app::run_check(job);
+    if (!run || run->stopped) throw std::runtime_error("the program cannot be checked");
+    uint64_t clear = 0;
+    for (const app::CheckedBlock& block : run->blocks) {
+        if (block.result.motion == core::BlockMotion::none) continue;
+        const bool has_error =
+            std::any_of(run->findings.begin(), run->findings.end(), [&](const auto& finding) {
+                return finding.severity == core::Severity::error && finding.block == block.block;
+            });
+        if (block.result.verdict != core::Verdict::clear || has_error) break;
+        ++clear;
+    }
+    return clear;
+}
 
 /// The guard permits the motions before the first one that a check of the program does not call
 /// clear, and no more.
@@ -1061,24 +1142,7 @@ TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
     size_t stopped_late = 0;
     for (uint32_t seed = 1; seed <= 60; ++seed) {
         RandomMotions motions(seed);
-        app::CheckJob job;
-        job.program = folder.write("random.ngc", motions.program);
-        job.setup = path;
-        job.detail = core::Detail::every_pair;
-        const auto run = app::run_check(job);
-        ASSERT_TRUE(run.has_value()) << run.error().message;
-        ASSERT_FALSE(run->stopped.has_value()) << run->stopped->message << "\n" << motions.program;
-        uint64_t clear = 0;
-        for (const app::CheckedBlock& block : run->blocks) {
-            if (block.result.motion == core::BlockMotion::none) continue;
-            const bool has_error =
-                std::any_of(run->findings.begin(), run->findings.end(), [&](const auto& finding) {
-                    return finding.severity == core::Severity::error
-                           && finding.block == block.block;
-                });
-            if (block.result.verdict != core::Verdict::clear || has_error) break;
-            ++clear;
-        }
+        const uint64_t clear = clear_motions(folder.write("random.ngc", motions.program), path);
         app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 0.1);
         while (guard.has_motion() && guard.step()) {
         }
@@ -1086,6 +1150,30 @@ TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
         stopped_late += clear > 3 && clear < motions.machine.ring->written;
     }
     EXPECT_GT(stopped_late, 20U);
+}
+
+/// The same on a table that turns, while the control follows the tip.
+TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblemOnFiveAxes) {
+    const test_support::ScopedFolder folder;
+    folder.write("mill.ini", five_axes_ini);
+    std::string text = setup_text;
+    text.replace(text.find("start = {"), 9, "ini = \"mill.ini\"\nstart = { A = 0, C = 0,");
+    const std::string path = folder.write("mill.toml", text);
+    const auto setup = app::read_setup(path, {});
+    ASSERT_TRUE(setup.has_value()) << setup.error().message;
+    const app::ControlKinematics kinematics(1.0, setup->environment.kinematics.value(),
+                                            setup->setup.machine, 0.01);
+    size_t stopped_late = 0;
+    for (uint32_t seed = 1; seed <= 12; ++seed) {
+        RandomMotions motions(seed, true);
+        const uint64_t clear = clear_motions(folder.write("random.ngc", motions.program), path);
+        app::Guard guard(setup->setup, *motions.machine.ring, 1.0, 0.1, kinematics);
+        while (guard.has_motion() && guard.step()) {
+        }
+        EXPECT_EQ(motions.machine.permitted(), clear) << "seed " << seed << "\n" << motions.program;
+        stopped_late += clear > 3 && clear < motions.machine.ring->written;
+    }
+    EXPECT_GE(stopped_late, 4U);
 }
 
 /// The log of a run is a program with the same motions.
@@ -1108,7 +1196,7 @@ TEST(GuardedPrograms, AreRepeatedByTheirLogs) {
             app::Guard guard(setup.setup, *motions.machine.ring, 1.0, 0.1);
             auto log = app::MotionLog::begin(log_path, setup);
             ASSERT_TRUE(log.has_value());
-            guard.after_motion = [&](const feeler_segment& motion) {
+            guard.after_motion = [&](const app::LiveMotion& motion) {
                 log->add(motion);
                 ends.push_back(motion.to[0]);
             };
@@ -1162,8 +1250,17 @@ TEST(GuardCommand, NamesWhatItCannotWorkWith) {
     EXPECT_THAT(refusal(without(setup_text, "[offsets]", "[stock]"), ini),
                 HasSubstr("work offsets"));
     EXPECT_THAT(refusal(without(setup_text, "[[tool]]", "\n\n"), ini), HasSubstr("tools"));
-    EXPECT_THAT(refusal(setup_text, "[KINS]\nKINEMATICS = xyzac-trt-kins\n"),
-                AllOf(HasSubstr("xyzac-trt-kins"), HasSubstr("trivkins")));
+    EXPECT_THAT(refusal(setup_text, "[KINS]\nKINEMATICS = genhexkins\n"), HasSubstr("genhexkins"));
+    EXPECT_THAT(
+        refusal(setup_text, "[KINS]\nKINEMATICS = xyzac-trt-kins\n[HAL]\nHALFILE = pins.tcl\n"),
+        HasSubstr("_hal[xyzac-trt-kins"));
+    const std::string five_axes = "[KINS]\nKINEMATICS = xyzac-trt-kins\n[HAL]\nHALCMD = setp "
+                                  "xyzac-trt-kins.y-offset 20\n";
+    const std::string rotary =
+        "name = \"A\"\nkind = \"rotary\"\nside = \"table\"\nparent = \"base\"\n"
+        "direction = [-1, 0, 0]\npoint = [0, 19, 0]\n";
+    EXPECT_THAT(refusal(setup_text + "[[machine.axis]]\n" + rotary, five_axes),
+                HasSubstr("rotary axes are not where xyzac-trt-kins"));
 }
 
 TEST(MotionLog, WritesARefusalBehindTheMotionsBeforeIt) {
@@ -1174,7 +1271,9 @@ TEST(MotionLog, WritesARefusalBehindTheMotionsBeforeIt) {
     machine.line(0, 0, 20);
     machine.rapid(60, 0, 20);
     machine.rapid(0, 0, 40);
-    const auto motion = [&](uint64_t number) { return machine.ring->segment[number]; };
+    const auto motion = [&](uint64_t number) {
+        return app::ControlKinematics(1.0).read(machine.ring->segment[number]);
+    };
     {
         auto log = app::MotionLog::begin(folder / "log.ngc", setup);
         ASSERT_TRUE(log.has_value());

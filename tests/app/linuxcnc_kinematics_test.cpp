@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/guard/live_motion.h"
 #include "app/setup/hal_settings.h"
 #include "app/setup/linuxcnc_kinematics.h"
 #include "core/motion/kinematics.h"
@@ -117,6 +119,98 @@ TEST(LinuxcncKinematics, AgreeWithTheModulesOfLinuxcnc) {
         }
         EXPECT_GT(farthest, 0.0) << example.module; // they are not the same code
     }
+}
+
+/// A motion as feeler_tp writes it into the ring, in these units.
+feeler_segment queued(const Example& example, LinuxcncModule& module, const core::AxisValues& from,
+                      const core::AxisValues& to, double tool) {
+    feeler_segment motion{};
+    motion.shape = FEELER_LINE;
+    motion.tool_length = tool;
+    motion.joints = static_cast<uint32_t>(example.coordinates.size());
+    const auto joints = [&](double part, double(&joint)[FEELER_JOINTS]) {
+        core::AxisValues at{};
+        for (size_t i = 0; i < core::axis_count; ++i) at[i] = from[i] + part * (to[i] - from[i]);
+        const EmcPose pose{at[0], at[1], at[2], at[3], at[4], at[5], at[6], at[7], at[8]};
+        module.inverse(pose, joint);
+    };
+    std::copy(from.begin(), from.end(), motion.from);
+    std::copy(to.begin(), to.end(), motion.to);
+    joints(0.0, motion.joint_from);
+    joints(FEELER_BETWEEN, motion.joint_between);
+    joints(1.0, motion.joint_to);
+    return motion;
+}
+
+/// The guard finds out which kinematics LinuxCNC uses, and what its joints do, from the motions in
+/// the ring; and that pins are not those of the set-up.
+TEST(LinuxcncKinematics, AreRecognizedInQueuedMotions) {
+    std::mt19937 random(29);
+    std::uniform_real_distribution<double> linear(-400.0, 400.0), angle(-400.0, 400.0),
+        length(10.0, 200.0);
+    for (const double unit : {1.0, 25.4})
+        for (const Example& example : examples()) {
+            LinuxcncModule module(example.module);
+            for (const auto& [pin, value] : example.pins) module.set(pin, value);
+            HalSettings hal;
+            for (const auto& [pin, value] : example.pins)
+                hal.add("setp " + pin + " " + std::to_string(value), {});
+            hal.add("setp " + example.length_pin + " " + std::to_string(example.length_base), {});
+            gcode::SwitchableKinematics switches =
+                linuxcnc_kinematics(example.module, "", hal, {}, unit)->switches;
+            const auto machine = switches.machine;
+            ASSERT_TRUE(machine) << example.module;
+            const ControlKinematics kinematics(unit, std::move(switches), *machine, 0.01);
+            size_t recognized = 0, alike = 0;
+            for (int sample = 0; sample < 500; ++sample) {
+                core::AxisValues from{}, to{};
+                for (size_t axis = 0; axis < core::axis_count; ++axis) {
+                    if (example.coordinates.find(core::axis_letters[axis]) == std::string::npos)
+                        continue;
+                    from[axis] = core::is_rotary(axis) ? angle(random) : linear(random);
+                    to[axis] = core::is_rotary(axis) ? angle(random) : linear(random);
+                }
+                to[8] = from[8]; // W bends the way of the tip
+                if (sample % 5 == 0) to[4] = from[4] + 720.0;
+                const bool is_tip = sample % 2 == 0;
+                module.use(is_tip ? example.tip : 1 - example.tip);
+                const double tool = length(random);
+                module.set(example.length_pin, example.length_base + tool);
+                const feeler_segment motion = queued(example, module, from, to, tool);
+                const LiveMotion read = kinematics.read(motion);
+                ASSERT_EQ(read.problem, "") << example.module << " " << sample;
+                ASSERT_EQ(read.follows_tip, is_tip) << example.module << " " << sample;
+                for (size_t joint = 0; joint < example.coordinates.size(); ++joint) {
+                    const size_t axis = core::axis_letters.find(example.coordinates[joint]);
+                    const double scale = core::is_rotary(axis) ? 1.0 : unit;
+                    EXPECT_NEAR(read.axes_from[axis], scale * motion.joint_from[joint], 1e-7);
+                    EXPECT_NEAR(read.axes_to[axis], scale * motion.joint_to[joint], 1e-7);
+                }
+                ++recognized;
+
+                if (!is_tip) continue;
+                // A tool, or a pivot, that the control has otherwise.
+                module.set(example.length_pin, example.length_base + tool + 0.1);
+                const feeler_segment elsewhere = queued(example, module, from, to, tool);
+                const LiveMotion other = kinematics.read(elsewhere);
+                if (other.problem.empty()) // it makes hardly any difference near to a level table
+                    ++alike;
+                else
+                    EXPECT_THAT(other.problem, ::testing::HasSubstr("kinematics"));
+                for (size_t joint = 0; joint < example.coordinates.size(); ++joint) {
+                    const size_t axis = core::axis_letters.find(example.coordinates[joint]);
+                    const double scale = core::is_rotary(axis) ? 1.0 : unit;
+                    if (other.problem.empty()) {
+                        EXPECT_NEAR(other.axes_to[axis], scale * elsewhere.joint_to[joint], 0.0101);
+                    }
+                }
+            }
+            EXPECT_EQ(recognized, 500u);
+            EXPECT_LT(alike, 5u);
+            feeler_segment unanswered{};
+            unanswered.shape = FEELER_LINE;
+            EXPECT_NE(kinematics.read(unanswered).problem, "");
+        }
 }
 
 /// LinuxCNC as it moves, with its module: positions of the program are those of its world, which it

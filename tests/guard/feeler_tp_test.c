@@ -53,6 +53,18 @@ int rtapi_shmem_delete(int id, int module) {
     return 0;
 }
 
+/* A machine whose joints are 1000 from the planner's positions; in its other mode 2000. */
+static double joint_offset = 1000.0;
+static int has_inverse = 1;
+int kinematicsInverse(EmcPose const *pose, double *joint, KINEMATICS_INVERSE_FLAGS const *inverse,
+                      KINEMATICS_FORWARD_FLAGS *forward) {
+    (void)inverse, (void)forward;
+    joint[0] = pose->tran.x + joint_offset;
+    joint[1] = pose->tran.y + joint_offset;
+    joint[2] = pose->tran.z + joint_offset;
+    return has_inverse ? 0 : -1;
+}
+
 static int output_line; /* in which digital output 0 was set last */
 static struct state_tag_t tag;
 static TP_STRUCT tp;
@@ -138,6 +150,7 @@ static struct feeler_segment const *last_segment(void) {
 static void start(void) {
     EXPECT(rtapi_app_main() == 0);
     config.numSpindles = 1;
+    config.numJoints = 3;
     config.numDIO = config.numAIO = 4;
     config.maxFeedScale = 1.2;
     config.arcBlendEnable = config.arcBlendFallbackEnable = 1;
@@ -488,6 +501,143 @@ static void is_full_before_the_ring_is(void) {
     EXPECT(add_line(-5, 0, 0) == TP_ERR_FAIL);
 }
 
+/* What the kinematics make of each motion is in the ring. */
+static void asks_the_kinematics(void) {
+    motion.tool_offset.tran.z = 80.0;
+    add_line(10, 20, 0);
+    struct feeler_segment const *s = last_segment();
+    EXPECT(s->joints == 3 && s->tool_length == 80.0);
+    EXPECT(s->joint_from[0] == 1000.0 && s->joint_to[0] == 1010.0 && s->joint_to[1] == 1020.0);
+    EXPECT(fabs(s->joint_between[1] - 1000.0 - 20.0 * FEELER_BETWEEN) < 1e-9);
+    has_inverse = 0;
+    add_line(20, 20, 0);
+    EXPECT(last_segment()->joints == 0);
+}
+
+/* A change of the kinematics gives the planner another position: nothing goes on from there. */
+static void ends_the_program_when_the_kinematics_change(void) {
+    add_line(100, 0, 0);
+    add_line(200, 0, 0);
+    add_line(300, 0, 0);
+    permit(2);
+    cycle(1000);
+    double const here = x_of();
+    EXPECT(here > 1.0 && here < 100.0);
+    EmcPose const there = at(here + 1000.0, 0, 0);
+    joint_offset = 0.0;
+    tpSetPos(&tp, &there);
+    EXPECT(add_line(1400, 0, 0) == TP_ERR_FAIL);
+    cycle(3000);
+    EXPECT(tpIsDone(&tp) && x_of() < here + 1005.0); /* the way in which it brakes */
+    EXPECT(ring->dropped == 3);
+    EXPECT(add_line(1400, 0, 0) == TP_ERR_OK);
+    EXPECT(last_segment()->follows_part == 1 && last_segment()->follows == 1);
+    EXPECT(fabs(last_segment()->from[0] - x_of()) < 1e-9);
+    /* The same position changes nothing. */
+    EmcPose now;
+    permit(ring->written);
+    cycle(500);
+    tpGetPos(&tp, &now);
+    tpSetPos(&tp, &now);
+    cycle(20000);
+    EXPECT(fabs(x_of() - 1400.0) < 1e-9);
+}
+
+static double uniform(double low, double high) { return low + (high - low) * rand() / RAND_MAX; }
+
+static EmcPose between(EmcPose const *a, EmcPose const *b, double t) {
+    EmcPose p = at(a->tran.x + t * (b->tran.x - a->tran.x), a->tran.y + t * (b->tran.y - a->tran.y),
+                   a->tran.z + t * (b->tran.z - a->tran.z));
+    p.a = a->a + t * (b->a - a->a), p.c = a->c + t * (b->c - a->c);
+    return p;
+}
+
+static double distance(EmcPose const *a, EmcPose const *b) {
+    return sqrt(pow(b->tran.x - a->tran.x, 2) + pow(b->tran.y - a->tran.y, 2)
+                + pow(b->tran.z - a->tran.z, 2));
+}
+
+/* How far a pose is from a straight motion: `off` in its tip, the result in the sum of its angles from
+ * the nearest angles that the motion has within `near` of the tip. */
+static double off_line(EmcPose const *p, EmcPose const *a, EmcPose const *b, double near, double *off) {
+    double const length = distance(a, b);
+    double const along = (p->tran.x - a->tran.x) * (b->tran.x - a->tran.x)
+                         + (p->tran.y - a->tran.y) * (b->tran.y - a->tran.y)
+                         + (p->tran.z - a->tran.z) * (b->tran.z - a->tran.z);
+    double t = length > 0 ? along / (length * length) : 0;
+    t = fmax(0, fmin(1, t));
+    EmcPose const nearest = between(a, b, t);
+    *off = distance(p, &nearest);
+    if (*off > near) return 1e9;
+    double const reach = length > 0 ? sqrt(near * near - *off * *off) / length : 1;
+    double least = 1e9;
+    for (int i = -200; i <= 200; ++i) {
+        EmcPose const q = between(a, b, fmax(0, fmin(1, t + reach * i / 200)));
+        least = fmin(least, fabs(q.a - p->a) + fabs(q.c - p->c));
+    }
+    return least;
+}
+
+/* Corners at which rotary axes turn: the tip and the angles are never farther from the path than the
+ * guard is told, and smooth ones are made without a stop. */
+static void leaves_turning_corners_by_little(void) {
+    srand(7);
+    ring->feed_tolerance = 0.1;
+    ring->turn_tolerance = 0.02;
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.0);
+    EmcPose pose[3];
+    memset(pose, 0, sizeof pose);
+    int smooth = 0, stopped = 0, sharp = 0, blended = 0;
+    double farthest = 0, turned = 0;
+    for (int k = 0; k < 3000; ++k) {
+        int const is_smooth = k % 2;
+        double const turn = is_smooth ? uniform(-0.02, 0.02) : uniform(-3, 3);
+        double const heading = uniform(-3, 3), rate = uniform(-1, 1), swing = uniform(-1, 1);
+        double const length = pow(10, is_smooth ? uniform(-1, -0.3) : uniform(-1, 1.3));
+        for (int i = 1; i < 3; ++i) {
+            double const way = heading + (i == 2 ? turn : 0);
+            double const l = length * (is_smooth ? 1 : i == 2 ? pow(10, uniform(-1, 1)) : 1);
+            double const more = is_smooth ? uniform(0.995, 1.005) : uniform(-2, 2);
+            pose[i] = pose[i - 1];
+            pose[i].tran.x += l * cos(way), pose[i].tran.y += l * sin(way);
+            pose[i].tran.z += is_smooth ? 0 : uniform(-1, 1) * l;
+            pose[i].a += is_smooth ? rate * l * more : rand() % 4 ? rate * more : 0;
+            pose[i].c += is_smooth ? swing * l * more : rand() % 4 ? swing * more : 0;
+            tpSetId(&tp, ++line_number);
+            EXPECT(tpAddLine(&tp, pose[i], 2, pow(10, uniform(0.5, 2)), 100,
+                             pow(10, uniform(2, 3.5)), 0xff, 0, -1, tag) == TP_ERR_OK);
+        }
+        int const is_turning = pose[1].a != pose[0].a || pose[1].c != pose[0].c
+                               || pose[2].a != pose[1].a || pose[2].c != pose[1].c;
+        double const most = last_segment()->tolerance * FEELER_TURNING_CORNER;
+        permit(ring->written);
+        int rests = 0;
+        for (int i = 0; i < 200000; ++i) {
+            cycle(1);
+            EmcPose now;
+            tpGetPos(&tp, &now);
+            rests += motion_count > 0 && real_tpIsDone(&tp) && i > 5;
+            double off[2];
+            double const angle = fmin(off_line(&now, &pose[0], &pose[1], most, &off[0]),
+                                      off_line(&now, &pose[1], &pose[2], most, &off[1]));
+            if (is_turning) {
+                farthest = fmax(farthest, fmin(off[0], off[1]) / most);
+                turned = fmax(turned, angle);
+            }
+            if (i > 5 && tpIsDone(&tp)) break;
+        }
+        *(is_smooth ? &smooth : &sharp) += 1;
+        *(is_smooth ? &stopped : &blended) += is_smooth ? rests > 0 : rests == 0;
+        pose[0] = pose[2];
+    }
+    printf("smooth corners: %d, of which %d with a stop; others: %d, of which %d without; off the path by up to "
+           "%.2f of what is told, angles by %.5f degrees\n",
+           smooth, stopped, sharp, blended, farthest, turned);
+    EXPECT(farthest <= 1.0 && turned <= FEELER_TURN_ERROR);
+    EXPECT(stopped < smooth / 20);
+    EXPECT(farthest > 0.2 && turned > 0.0001); /* it does blend */
+}
+
 int main(int count, char **words) {
     struct {
         char const *name;
@@ -514,6 +664,9 @@ int main(int count, char **words) {
         CASE(tells_how_the_spindle_turns),
         CASE(runs_only_forwards),
         CASE(is_full_before_the_ring_is),
+        CASE(asks_the_kinematics),
+        CASE(leaves_turning_corners_by_little),
+        CASE(ends_the_program_when_the_kinematics_change),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         if (count == 2 && strcmp(words[1], cases[i].name) != 0) continue;

@@ -100,7 +100,45 @@ net Ypos => sampler.0.pin.1
 net Zpos => sampler.0.pin.2
 addf sampler.0 servo-thread
 """
+# A table that tilts about X and turns about Z below the workpiece: (ini, HAL) for scenarios on five axes.
+FIVE_AXES_INI = {
+    "COORDINATES = X Y Z": "COORDINATES = XYZAC",
+    "KINEMATICS = trivkins\nJOINTS = 3": "KINEMATICS = xyzac-trt-kins sparm=identityfirst\nJOINTS = 5",
+}
+ROTARY_AXIS = """[AXIS_{letter}]
+MIN_LIMIT = -36000
+MAX_LIMIT = 36000
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+[JOINT_{joint}]
+TYPE = ANGULAR
+HOME = 0
+HOME_SEQUENCE = 0
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+MIN_LIMIT = -36000
+MAX_LIMIT = 36000
+FERROR = 5
+MIN_FERROR = 1
+"""
+FIVE_AXES_HAL = """loadrt sampler depth=120000 cfg=fffff
+net Xpos => sampler.0.pin.0
+net Ypos => sampler.0.pin.1
+net Zpos => sampler.0.pin.2
+net Apos joint.3.motor-pos-cmd => joint.3.motor-pos-fb sampler.0.pin.3
+net Cpos joint.4.motor-pos-cmd => joint.4.motor-pos-fb sampler.0.pin.4
+addf sampler.0 servo-thread
+net :kinstype-select motion.analog-out-03 => motion.switchkins-type
+net :tool-offset motion.tooloffset.z => xyzac-trt-kins.tool-offset
+setp xyzac-trt-kins.x-rot-point 10
+setp xyzac-trt-kins.y-rot-point -5
+setp xyzac-trt-kins.z-rot-point -250
+setp xyzac-trt-kins.y-offset 20
+setp xyzac-trt-kins.z-offset 15
+"""
 HAL_GUARDED = "net tool-number iocontrol.0.tool-number => feeler-tp.tool-number\n"
+
+FOLLOW_TIP, MOVE_AXES = "M68 E3 Q1\nM66 E0 L0\n", "M68 E3 Q0\nM66 E0 L0\n"
 
 # The tip of tool 1 at Z0 of G54 has the gauge line at machine Z-100.
 HEAD = "G21 G90 G17 G54\nT1 M6\nG43 H1\nM3 S1000\n"
@@ -160,7 +198,7 @@ class Machine:
         self.command.state(self.api.STATE_ON)
         self.command.wait_complete()
         self.command.home(-1)
-        self.wait(lambda s: all(s.homed[:3]), "it is homed")
+        self.wait(lambda s: all(s.homed[: s.joints]), "it is homed")
         self.sampler = subprocess.Popen(
             ["halsampler", "-c", "0"], stdout=open(self.folder + "/samples.txt", "w"), stderr=subprocess.DEVNULL
         )
@@ -229,7 +267,7 @@ class Machine:
         last, equal = None, 0
         for _ in within(seconds):
             self.poll()
-            now = self.status.position[:3]
+            now = self.status.position[:6]
             equal = equal + 1 if now == last else 0
             last = now
             if equal == 25:
@@ -494,6 +532,69 @@ def keeps_its_distance_in_random_motion(m):
     expect(rounds / 5 < held < rounds, f"{held} of {rounds} programs were held")
 
 
+def tilted_back(joints, length):
+    """Where the end of a tool of this length is, in world coordinates of the work on the table at A0 C0. From the
+    formulas of LinuxCNC's trtfuncs.c."""
+    x, y, z, a, c = joints
+    a, c = math.radians(a), math.radians(c)
+    x0, y0, z0, dy, dz = 10.0, -5.0, -250.0, 20.0, 15.0 + length
+    q, r, t = y - dy - y0, z - dz - z0, x - x0
+    s = q * math.cos(a) + r * math.sin(a) + dy
+    return (
+        math.cos(c) * t + math.sin(c) * s + x0,
+        -math.sin(c) * t + math.cos(c) * s + y0,
+        -q * math.sin(a) + r * math.cos(a) + dz + z0 - length,
+    )
+
+
+def distance_to_clamp(tip, a, c):
+    """The distance of the tool, a cylinder of radius 5 and length 100, from the clamp of FIVE_AXES, by points on the
+    tool: up to 0.02 mm too large. All as seen from the work."""
+
+    def direction(dx, dy, up):  # of the machine
+        ends = [tilted_back((k * dx, k * dy, k * up, a, c), 0.0) for k in (0, 1)]
+        return [q - p for p, q in zip(*ends)]
+
+    across, along, axis = direction(1, 0, 0), direction(0, 1, 0), direction(0, 0, 1)
+
+    def gap(height, angle, radius=5.0):
+        u, v = radius * math.cos(angle), radius * math.sin(angle)
+        place = [t + height * w + u * p + v * q for t, w, p, q in zip(tip, axis, across, along)]
+        return math.hypot(*(max(low - value, value - high, 0.0)
+                            for value, low, high in zip(place, (120, -40, -220), (140, 40, -170))))
+
+    angles = [k * math.pi / 90 for k in range(180)]
+    rim = min(gap(0.0, angle, radius) for angle in angles for radius in (5.0, 2.5, 0.0))
+    if rim > 60.0:
+        return rim
+    # The distance is convex in the height along each line of the side.
+    def side(angle):
+        low, high = 0.0, 100.0
+        for _ in range(40):
+            third = (high - low) / 3
+            if gap(low + third, angle) < gap(high - third, angle):
+                high -= third
+            else:
+                low += third
+        return gap(0.5 * (low + high), angle)
+
+    return min(rim, min(side(angle) for angle in angles[::6]))
+
+
+def nearest_on_five_axes(samples):
+    """The least distance of the tool from the clamp, and how far it was tilted at most."""
+    least, most_tilt = math.inf, 0.0
+    for joints in samples[::3]:
+        most_tilt = max(most_tilt, abs(joints[3]))
+        tip = tilted_back(joints, 100.0)
+        middle = tilted_back(joints, 50.0)
+        # The tool is within 51 of its middle, the clamp within 48 of its own.
+        if math.dist(middle, (130, 0, -195)) - 99 > min(least, 10.0):
+            continue
+        least = min(least, distance_to_clamp(tip, *joints[3:]))
+    return least, most_tilt
+
+
 def nearest_to_clamp(samples):
     """The least distance of the tool, a cylinder from its tip to the gauge line, from the clamp."""
     least = math.inf
@@ -501,6 +602,161 @@ def nearest_to_clamp(samples):
         beside = math.hypot(max(120 - x, x - 140, 0.0), max(abs(y) - 40, 0.0)) - 5.0
         least = min(least, math.hypot(max(beside, 0.0), max(z + 100 - 30, 0.0)))
     return least
+
+
+def runs_on_five_axes(m, program, expected_x=None):
+    """Runs a program that is held at X of the tip, or not at all."""
+    m.messages.clear()
+    m.run(program)
+    pause(0.3)
+    m.wait(lambda s: pin("feeler-tp.latched") == "TRUE" and pin("feeler-tp.holding") == "TRUE"
+           or s.interp_state == m.api.INTERP_IDLE and s.inpos, f"{program} ends")
+    held = pin("feeler-tp.latched") == "TRUE"
+    position = m.wait_at_rest()
+    if expected_x is None:
+        expect(not held, f"{program} is held: {m.messages}")
+    else:
+        expect(held and abs(position[0] - expected_x) < 1e-4,
+               f"{program} stops at {position}, not at X{expected_x}: {m.messages}")
+    m.abort()
+    if held:
+        m.clear()
+
+
+def level(m):
+    """By hand, which nothing watches: up, and the table level."""
+    for code in MOVE_AXES.split("\n")[:2]:
+        m.mdi(code)
+        m.wait_at_rest()
+    m.command.mode(m.api.MODE_MANUAL)
+    m.command.wait_complete()
+    m.command.teleop_enable(1)
+    m.command.wait_complete()
+    for axis in (2, 3, 5, 0, 1):
+        for _ in range(3):
+            m.poll()
+            way = -m.status.position[axis]
+            if abs(way) > 1e-6:
+                m.command.jog(m.api.JOG_INCREMENT, 0, axis, 80 if way > 0 else -80, abs(way))
+                m.wait_at_rest()
+    expect(all(abs(value) < 1e-5 for value in m.status.joint_actual_position[:5]), "it is level")
+
+
+@scenario
+def five_axes_stop_before_the_violation(m):
+    """The tip is followed as LinuxCNC's kinematics do it: it stops where the last clear block ends."""
+    m.start_guard(options=["--log", m.folder + "/log.ngc"])
+    for a, c in ((0, 30), (20, 0), (-25, 90), (25, 90), (30, -60)):
+        name = f"a{a}c{c}.ngc"
+        places = [60 + 0.5 * i for i in range(1, 140)]
+        lines = "".join(f"X{x:.3f}\n" for x in places)
+        write(f"{m.folder}/{name}", HEAD + "G61\n" + MOVE_AXES + FOLLOW_TIP + f"G0 X60 Y0 Z10\nA{a} C{c}\n"
+              + "G1 F6000\n" + lines + "M2\n")
+        near = next(x for x in places if distance_to_clamp((x, 0, -190), a, c) < 2 - 1e-6)
+        runs_on_five_axes(m, name, near - 0.5)
+        level(m)
+    # Where nothing is near, a program with full turns, arcs and both kinematics runs to its end.
+    write(m.folder + "/clear.ngc", HEAD + "G64 P0.05\n" + MOVE_AXES + "G0 X0 Y0 Z60\n" + FOLLOW_TIP
+          + "G0 A30 C90\nG1 X20 Y10 F3000\nA-20 C-45\nG3 X-20 Y10 I-20 J0 C135\nG1 Z70 A10 C400\nG0 A0 C360\n"
+          + MOVE_AXES + "G0 Z90\nA25 C0\n" + FOLLOW_TIP + "G1 X5 F2000\nG0 A0\nM2\n")
+    runs_on_five_axes(m, "clear.ngc")
+    level(m)
+    expect(m.stop_guard() == 1, "the guard has refused something")
+    checked = subprocess.run(
+        [FEELER, "check", m.folder + "/log.ngc", "--setup", m.folder + "/mill.toml", "--ini", m.folder + "/sim.ini",
+         "--format", "json", "-o", m.folder + "/log.json"], check=False)
+    expect(checked.returncode in (0, 1), "the log is a program that can be checked")
+    with open(m.folder + "/log.json", encoding="utf-8") as file:
+        blocks = json.load(file)["blocks"]
+    with open(m.folder + "/log.ngc", encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    by_hand = {number + 1 for number, line in enumerate(lines, 1) if line.startswith("(moved in another way")}
+    wrong = [lines[block["line"] - 1] for block in blocks if block["verdict"] != "clear" and block["line"] not in by_hand]
+    expect(len(blocks) > 300 and not wrong, f"what was made is clear: {wrong}")
+
+
+@scenario
+def five_axes_compare_the_kinematics(m):
+    """Nothing turns while the pins of the kinematics are not those of the set-up, or when they change on the way."""
+    write(m.folder + "/a.ngc", HEAD + MOVE_AXES + "G0 X0 Y0 Z60\n" + FOLLOW_TIP + "G0 A30 C90\nG0 A0 C0\nM2\n")
+    m.start_guard()
+    runs_on_five_axes(m, "a.ngc")
+    level(m)
+    set_pin("xyzac-trt-kins.y-offset", "20.5")
+    m.run("a.ngc")
+    m.wait_told("kinematics")
+    expect(abs(m.wait_at_rest()[3]) < 1e-9, "it turns with another pivot")
+    m.abort()
+    m.clear()
+    set_pin("xyzac-trt-kins.y-offset", "20")
+    level(m)
+    # M67 switches the kinematics while the next motion is made.
+    write(m.folder + "/b.ngc", HEAD + MOVE_AXES + "G0 X0 Y0 Z60\nG1 A30 C90 F6000\nM67 E3 Q1\nG1 X80 A0\nX85\nM2\n")
+    m.messages.clear()
+    m.run("b.ngc")
+    m.wait(lambda s: s.interp_state == m.api.INTERP_IDLE or pin("feeler-tp.latched") == "TRUE", "it ends")
+    joints = m.wait_at_rest() and m.status.joint_actual_position[:5]
+    expect(joints[0] < 40, f"it goes on in other kinematics: {joints}")
+    m.abort()
+    m.stop_guard()
+
+
+def random_five_axis_program(random):
+    lines = [random.choice(["G61.1", "G61", "G64 P0.05", "G64 P0.5 Q0"]), f"F{random.choice([1000, 4000, 12000])}"]
+    lines.append(f"G0 X{random.uniform(60, 110):.3f} Y{random.uniform(-60, 60):.3f} Z{random.uniform(60, 90):.3f}")
+    lines.append(FOLLOW_TIP.strip())
+    for _ in range(random.randint(4, 12)):
+        place = [random.uniform(60, 170), random.uniform(-75, 75), random.uniform(15, 80)]
+        words = [f"{axis}{value:.3f}" for axis, value in zip("XYZ", place) if random.random() < 0.6]
+        if random.random() < 0.6:
+            words.append(f"A{random.uniform(-45, 45):.3f}")
+        if random.random() < 0.6:
+            words.append(f"C{random.uniform(-200, 200):.3f}")
+        if random.random() < 0.15:
+            lines.append(f"{random.choice(['G2', 'G3'])} X#5420 Y#5421 I{random.uniform(-15, 15):.3f} "
+                         f"J{random.uniform(-15, 15):.3f} Z{place[2]:.3f} C{random.uniform(-90, 90):.3f}")
+        elif words:
+            lines.append(f"{random.choice(['G0', 'G1', 'G1'])} {' '.join(words)}")
+        if random.random() < 0.1:
+            lines.append(random.choice([FOLLOW_TIP, MOVE_AXES]).strip())
+    return HEAD + MOVE_AXES + "\n".join(lines) + "\nM2\n"
+
+
+@scenario
+def five_axes_keep_their_distance(m):
+    """Random motion in both kinematics: in no servo cycle is the tool nearer to the clamp than the set-up allows."""
+    import random as source
+
+    rounds = int(os.environ.get("FEELER_GUARD_ROUNDS", "6"))
+    random = source.Random(int(os.environ.get("FEELER_GUARD_SEED", "1")))
+    m.start_guard()
+    m.mdi("M61 Q1")
+    m.wait_at_rest()
+    held = 0
+    for i in range(rounds):
+        write(f"{m.folder}/{i}.ngc", random_five_axis_program(random))
+        m.messages.clear()
+        m.run(f"{i}.ngc")
+        pause(0.3)
+        m.wait(lambda s: pin("feeler-tp.holding") == "TRUE" or s.interp_state == m.api.INTERP_IDLE and s.inpos, f"{i}.ngc ends")
+        if random.random() < 0.3:
+            m.abort()
+        if pin("feeler-tp.latched") == "TRUE":
+            held += 1
+            m.wait_at_rest()
+            m.abort()
+            if random.random() < 0.5:
+                m.mdi(f"G0 X{random.uniform(85, 175):.3f} A{random.uniform(-45, 45):.3f}")  # while it is latched
+                m.wait_at_rest()
+                m.abort()
+            m.clear()
+        expect(not m.told("kinematics"), f"its kinematics are not known: {m.messages}")
+        m.abort()
+        set_pin("sampler.0.enable", "0")  # what is moved by hand does not count
+        level(m)
+        set_pin("sampler.0.enable", "1")
+    m.stop_guard()
+    expect(rounds / 5 < held < rounds, f"{held} of {rounds} programs were held")
 
 
 # --- from outside -----------------------------------------------------------------------------
@@ -532,6 +788,52 @@ def same_path(m):
     if m.is_guarded:
         expect(m.stop_guard() == 0, "the guard has refused nothing")
 
+
+def five_axes_same_path(m):
+    """A program on five axes: as before without the guard; and one with a mistake is held at its first motion."""
+    if m.is_guarded:
+        m.start_guard()
+    m.run_to_end("dome.ngc", 240)
+    m.wait_at_rest()
+    expect(not m.messages, f"something was refused: {m.messages}")
+    if not m.is_guarded:
+        return
+    set_pin("sampler.0.enable", "0")
+    m.run("dome_m428.ngc")
+    m.wait_told("Feeler stops before line 10")
+    m.wait_at_rest()
+    m.abort()
+    m.stop_guard()
+
+
+def make_dome_files(folder):
+    """A dome of assets/, which feeds faster than it was written, and the sample machine of LinuxCNC that it is for."""
+    with open(SOURCE + "/assets/setups/dome.toml", encoding="utf-8") as file:
+        setup = file.read()
+    write(folder + "/mill.toml", setup.replace("../machines/xyzac.toml", "xyzac.toml"))
+    shutil.copy(SOURCE + "/assets/machines/xyzac.toml", folder)
+    for name in ("dome.ngc", "dome_m428.ngc"):
+        with open(f"{SOURCE}/assets/programs/{name}", encoding="utf-8") as file:
+            code = file.read().replace("\nG54\n", "\nG54 G61\n")
+        write(f"{folder}/{name}", re.sub(r"F(\d+)", lambda match: "F" + str(10 * int(match[1])), code))
+    for name, code in (("428remap", FOLLOW_TIP), ("429remap", MOVE_AXES)):
+        write(f"{folder}/{name}.ngc", f"o<{name}> sub\n{code}o<{name}> endsub\nM2\n")
+    write(folder + "/tool.tbl", "T1 P1 Z70 D6\n")
+    write_parameters(folder, [0.0] * 9)
+    with open(folder + "/sim.ini", encoding="utf-8") as file:
+        ini = file.read().replace("[JOINT_2]\nTYPE = LINEAR\nHOME = 0\n",
+                                  "[JOINT_2]\nTYPE = LINEAR\nHOME_OFFSET = 120\nHOME = 120\n")
+    write(folder + "/sim.ini", ini.replace("[RS274NGC]\n", "[RS274NGC]\nSUBROUTINE_PATH = .\n"
+                                           "REMAP = M428 modalgroup=10 ngc=428remap\nREMAP = M429 modalgroup=10 ngc=429remap\n"))
+    with open(folder + "/test.hal", encoding="utf-8") as file:
+        hal = file.read()
+    for pin_name, value in (("x-rot-point", 0), ("y-rot-point", 0), ("z-rot-point", 0), ("z-offset", 10)):
+        hal = re.sub(f"setp xyzac-trt-kins.{pin_name} .*", f"setp xyzac-trt-kins.{pin_name} {value}", hal)
+    write(folder + "/test.hal", hal)
+
+
+# Scenarios that are also run with the stock planner.
+COMPARED = {"same_path": same_path, "five_axes_same_path": five_axes_same_path}
 
 # The programs of tests/planted for LinuxCNC whose set-ups have three axes, by set-up.
 PLANTED = ("plate", "plate_stud", "plate_tall")
@@ -671,12 +973,12 @@ def distance_of_paths(path, other):
     return worst
 
 
-def compare_paths():
-    """Problems with the path and the time of `same_path` with and without the guard."""
+def compare_paths(name):
+    """Problems with the path and the time of a scenario with and without the guard."""
     samples = {}
     for planner in ("tpmod", "feeler_tp"):
         with tempfile.TemporaryDirectory() as kept:
-            problem = run_scenario("same_path", planner, kept)
+            problem = run_scenario(name, planner, kept)
             if problem != "passed":
                 return problem
             samples[planner] = read_samples(kept)
@@ -721,11 +1023,19 @@ def make_files(folder, name, planner):
     write(display, f"#!/bin/sh\nexec python3 driver.py --drive {folder} {name}\n")
     os.chmod(display, 0o755)
     axes = "".join(AXIS.format(letter=letter, joint=joint) for joint, letter in enumerate("XYZ"))
-    write(folder + "/sim.ini", INI.format(display=display, planner=planner) + axes)
-    write(folder + "/test.hal", HAL + (HAL_GUARDED if planner == "feeler_tp" else ""))
+    ini, hal = INI.format(display=display, planner=planner), HAL
+    if name.startswith("five_axes"):
+        for old, new in FIVE_AXES_INI.items():
+            ini = ini.replace(old, new)
+        hal = FIVE_AXES_HAL
+        axes += "".join(ROTARY_AXIS.format(letter=letter, joint=joint) for joint, letter in ((3, "A"), (4, "C")))
+    write(folder + "/sim.ini", ini + axes)
+    write(folder + "/test.hal", hal + (HAL_GUARDED if planner == "feeler_tp" else ""))
     write(folder + "/tool.tbl", "T1 P1 Z100 D10\n")
     write_parameters(folder, [0.0, 0.0, -200.0])
     write(folder + "/mill.toml", SETUP)
+    if name == "five_axes_same_path":
+        make_dome_files(folder)
     if name.startswith("planted:"):
         make_planted_files(folder, name.split(":")[1])
 
@@ -765,6 +1075,11 @@ def run_scenario(name, planner="feeler_tp", keep=None):
             print(f"  least distance: {least:.4f} mm, of which 2 must be kept")
             if least < 2.0 - 1e-4:
                 problem = "the tool came too near to the clamp"
+        if problem == "passed" and name == "five_axes_keep_their_distance":
+            least, tilt = nearest_on_five_axes(read_samples(folder))
+            print(f"  least distance: {least:.4f} mm, of which 2 must be kept; tilted by up to {tilt:.0f} degrees")
+            if least < 2.0 - 1e-4 or tilt < 20.0:
+                problem = "the tool came too near to the clamp, or did not tilt"
         if problem != "passed":
             with open(folder + "/output", encoding="utf-8", errors="replace") as output:
                 problem += "\n" + "".join(output.readlines()[-40:])
@@ -778,7 +1093,7 @@ def drive(folder, name):
     problem = "passed"
     try:
         machine.start()
-        (planted if name.startswith("planted:") else same_path if name == "same_path" else SCENARIOS[name])(machine)
+        (planted if name.startswith("planted:") else COMPARED.get(name) or SCENARIOS[name])(machine)
         machine.end_samples()
     except Exception as error:  # whatever goes wrong is the result of the scenario
         problem = f"{type(error).__name__}: {error}"
@@ -793,7 +1108,7 @@ def main(arguments):
         FEELER = arguments[1] + "/bin/feeler"
         return drive(*arguments[1:3])
     FEELER, SOURCE = (os.path.abspath(path) for path in arguments[:2])
-    names = arguments[2:] or [*SCENARIOS, "same_path", *("planted:" + setup for setup in PLANTED)]
+    names = arguments[2:] or [*SCENARIOS, *COMPARED, *("planted:" + setup for setup in PLANTED)]
     if not shutil.which("linuxcnc") or not shutil.which("halcompile"):
         print("skipped: linuxcnc-uspace and linuxcnc-uspace-dev are not installed")
         return 77
@@ -803,7 +1118,7 @@ def main(arguments):
             return 77
     failed = []
     for name in names:
-        problem = compare_paths() if name == "same_path" else run_scenario(name)
+        problem = compare_paths(name) if name in COMPARED else run_scenario(name)
         print(f"{'passed' if problem == 'passed' else 'FAILED'} {name}", flush=True)
         if problem != "passed":
             print(problem, flush=True)

@@ -16,6 +16,7 @@ CHANGES = [
     ("tp.h", r"double acc, unsigned char enables", "double acc, double ini_maxjerk, unsigned char enables"),
     ("tp.h", r"double scale,\s*struct state_tag_t tag\)", "double scale, double jerk, struct state_tag_t tag)"),
     ("tp.h", r"int tpSetVlimit\(TP_STRUCT \* tp, double limit\)", "int tpSetVlimit(TP_STRUCT * tp, float limit)"),
+    ("emcmotcfg.h", r"EMCMOT_MAX_JOINTS 16", "EMCMOT_MAX_JOINTS 18"),
     ("state_tag.h", r"GM_FLAG_MAX_FLAGS", "GM_FLAG_MAX_FLAGS = 33"),
 ]
 

@@ -41,9 +41,9 @@ KeyJson path_json(const std::string& path) {
 KeyJson settings_json(const ProgramSettings& settings) {
     // This does not compile after a member was added: add it to the key below.
     const auto& [dialect, block_delete, start, machine_unit, units_at_start, max_blocks,
-                 counts_smallest_steps, ini, parameters, tool_table, search_path, machine_codes,
-                 tool_at_start, spindle_at_start, values, named_values, measured_offsets_are_stated,
-                 speed_by_hand] = settings;
+                 counts_smallest_steps, ini, parameters, tool_table, ignores_tables, search_path,
+                 machine_codes, tool_at_start, spindle_at_start, values, named_values,
+                 measured_offsets_are_stated, speed_by_hand] = settings;
     KeyJson variables = KeyJson::array();
     for (const auto& [number, value] : values) variables.push_back({number, value});
     for (const auto& [name, value] : named_values)
@@ -61,6 +61,7 @@ KeyJson settings_json(const ProgramSettings& settings) {
             {"ini", path_json(ini)},
             {"parameters", path_json(parameters)},
             {"tool_table", path_json(tool_table)},
+            {"ignores_tables", ignores_tables},
             {"search_path", folders},
             {"machine_codes", machine_codes},
             {"tool_at_start", enum_json(tool_at_start)},

@@ -19,8 +19,10 @@
  * overwritten before `read` counts it.
  *
  * Lengths and positions are in the units of the machine (LINEAR_UNITS of its ini file), angles in
- * degrees. Positions are machine coordinates of X Y Z A B C U V W, as the axes move: with work
- * offsets and tool offsets in them.
+ * degrees. Positions are machine coordinates of X Y Z A B C U V W, as the planner has them: with
+ * work offsets and tool offsets in them. With trivkins the axes move there. Other kinematics may
+ * make X Y Z those of the tool's tip as seen from the work; what the joints do then is in
+ * joint_from, joint_between and joint_to.
  */
 #ifndef FEELER_RING_H
 #define FEELER_RING_H
@@ -29,8 +31,16 @@
 
 #define FEELER_RING_KEY 0x46656c72 /* of the shared memory (System V) */
 #define FEELER_RING_MAGIC 0x46656c72u
-#define FEELER_RING_VERSION 1u
+#define FEELER_RING_VERSION 2u
 #define FEELER_RING_SEGMENTS 4096u
+#define FEELER_JOINTS 16
+/* Where a rotary axis turns, LinuxCNC leaves a corner by up to this many times its tolerance. */
+#define FEELER_TURNING_CORNER 3.0
+/* A corner of turning motions is only blended if the rotary axes are in all nearer than this to where
+ * they would be at the same place of the path, degrees. */
+#define FEELER_TURN_ERROR 0.01
+/* Where on the straight way from `from` to `to` joint_between is: at no simple part of a turn. */
+#define FEELER_BETWEEN 0.381966011250105
 
 /* Shape of a path. A tap moves to `to` and back to `from`. */
 enum feeler_shape { FEELER_LINE = 1, FEELER_ARC = 2, FEELER_TAP = 3 };
@@ -65,6 +75,10 @@ struct feeler_segment {
     double tolerance;      /* of a blend; 0: none, as between rapids of a program that states none */
     double from[9], to[9];
     double centre[3], normal[3]; /* of an arc */
+    double tool_length;          /* along Z, in use */
+    /* Where the kinematics that LinuxCNC uses put the joints. */
+    uint32_t joints; /* 0: they could not be asked, or have no answer */
+    double joint_from[FEELER_JOINTS], joint_between[FEELER_JOINTS], joint_to[FEELER_JOINTS];
 };
 
 struct feeler_ring {
@@ -92,7 +106,8 @@ struct feeler_ring {
     /* The tolerance with which feeds are blended where the program states none: with it, how far
      * they are rounded is known. */
     double feed_tolerance;
-    uint64_t reserved_too[8];
+    double turn_tolerance; /* the same for motions that turn a rotary axis, at most */
+    uint64_t reserved_too[7];
 
     struct feeler_segment segment[FEELER_RING_SEGMENTS]; /* number n at n % FEELER_RING_SEGMENTS */
 };

@@ -15,6 +15,7 @@
  *          net tool-number iocontrol.0.tool-number => feeler-tp.tool-number
  */
 #include <dlfcn.h>
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 #include <time.h>
@@ -22,6 +23,7 @@
 #include "rtapi.h"
 #include "rtapi_app.h"
 #include "hal.h"
+#include "kinematics.h"
 #include "motion.h"
 #include "tp.h"
 
@@ -78,6 +80,7 @@ PLANNER(DECLARE)
  * than 32. */
 _Static_assert(sizeof(unsigned long) == 8, "feeler_tp needs a 64-bit system");
 _Static_assert(GM_FLAG_MAX_FLAGS <= 32, "this version of LinuxCNC has too many flags");
+_Static_assert(EMCMOT_MAX_JOINTS == FEELER_JOINTS, "this version of LinuxCNC is not known: joints");
 #define NUMBER_SHIFT 32
 
 /* --- what waits --------------------------------------------------------------------------------*/
@@ -90,6 +93,7 @@ struct call {
     int id;
     EmcPose end;
     PmCartesian centre, normal;
+    EmcPose begin;
     int turn, type, index, blends;
     double vel, max_vel, acc, scale, from, to, tolerance;
     unsigned char enables, start, stop;
@@ -133,6 +137,8 @@ static int component, memory = -1;
 static void *planner;
 static struct feeler_ring *ring;
 static emcmot_status_t *status;
+static emcmot_config_t *settings;
+static __typeof__(&kinematicsInverse) kinematics; /* of the machine; NULL: not found */
 
 static TP_STRUCT *the_tp; /* the one planner that there is */
 static EmcPose goal;      /* the end of the last motion that was accepted */
@@ -146,6 +152,7 @@ static EmcPose stopped_at;
 static int is_pausing;     /* by the operator */
 static int was_refused;    /* the planner refused a motion since the last one was accepted */
 static uint64_t released_at_stop = UINT64_MAX; /* motions after `last_begun` were not made */
+static struct call last_passed; /* the motion that the planner got last */
 static int was_clear_pressed;
 static uint64_t last_alive;
 static long long alive_at; /* when the guard gave its last sign of life, nanoseconds */
@@ -163,6 +170,76 @@ static int is_same_pose(EmcPose const *a, EmcPose const *b) {
     for (int i = 0; i < 9; ++i)
         if (p[i] - q[i] > TP_POS_EPSILON || q[i] - p[i] > TP_POS_EPSILON) return 0;
     return 1;
+}
+
+/* Where the machine's kinematics put the joints, in their present mode. 0: nowhere. */
+static int find_joints(double (*joint)[FEELER_JOINTS], EmcPose const *pose) {
+    double all[EMCMOT_MAX_JOINTS] = {0};
+    KINEMATICS_INVERSE_FLAGS const inverse = 0;
+    KINEMATICS_FORWARD_FLAGS forward = 0;
+    if (!kinematics || kinematics(pose, all, &inverse, &forward) != 0) return 0;
+    memcpy(*joint, all, sizeof *joint);
+    return 1;
+}
+
+static EmcPose pose_between(EmcPose const *a, EmcPose const *b) {
+    EmcPose p;
+    double const t = FEELER_BETWEEN;
+    p.tran.x = a->tran.x + t * (b->tran.x - a->tran.x);
+    p.tran.y = a->tran.y + t * (b->tran.y - a->tran.y);
+    p.tran.z = a->tran.z + t * (b->tran.z - a->tran.z);
+    p.a = a->a + t * (b->a - a->a);
+    p.b = a->b + t * (b->b - a->b);
+    p.c = a->c + t * (b->c - a->c);
+    p.u = a->u + t * (b->u - a->u);
+    p.v = a->v + t * (b->v - a->v);
+    p.w = a->w + t * (b->w - a->w);
+    return p;
+}
+
+static int turns(struct call const *c) {
+    return c->begin.a != c->end.a || c->begin.b != c->end.b || c->begin.c != c->end.c;
+}
+
+/* How far the rotary axes may in all be, while a corner is blended, from where they are at the same
+ * place of the path, degrees. Measured with the planner (tests/guard): it leaves a corner of the turn f
+ * with the tolerance T within 2 T / sin(f/2) of it. */
+static double turn_error(struct call const *before, struct call const *after) {
+    double p[9], q[9], r[9], square_before = 0, square_after = 0, product = 0;
+    copy_pose(p, &before->begin);
+    copy_pose(q, &before->end);
+    copy_pose(r, &after->end);
+    for (int i = 0; i < 3; ++i) {
+        square_before += (q[i] - p[i]) * (q[i] - p[i]);
+        square_after += (r[i] - q[i]) * (r[i] - q[i]);
+        product += (q[i] - p[i]) * (r[i] - q[i]);
+    }
+    double const first = sqrt(square_before), second = sqrt(square_after);
+    double error = 0;
+    if (first < TP_POS_EPSILON || second < TP_POS_EPSILON) {
+        for (int i = 3; i < 6; ++i) error += fabs(q[i] - p[i]) + fabs(r[i] - q[i]);
+        return error;
+    }
+    double const cosine = fmax(-1.0, fmin(1.0, product / (first * second)));
+    double const half_sine = sqrt(0.5 * (1.0 - cosine));
+    double part = fmin(first, second);
+    if (half_sine * part > 2.0 * before->tolerance) part = 2.0 * before->tolerance / half_sine;
+    for (int i = 3; i < 6; ++i) {
+        double const rate = (q[i] - p[i]) / first, next = (r[i] - q[i]) / second;
+        error += part * (fabs(next - rate) + fmax(fabs(rate), fabs(next)) * (1.0 - cosine));
+    }
+    return error;
+}
+
+/* Whether a motion must begin at rest, after another: LinuxCNC would blend the two, and how far the
+ * rotary axes are off then is not limited by the tolerance. */
+static int must_rest_before(struct call const *after, struct call const *before) {
+    int const is_rapid = after->type == FEELER_RAPID, was_rapid = before->type == FEELER_RAPID;
+    if (!turns(after) && !turns(before)) return 0;
+    if (!before->blends || is_rapid != was_rapid) return 0; /* not blended in any case */
+    if (after->what != ADD_LINE || before->what != ADD_LINE) return 1;
+    if (!turns(after) || !turns(before)) return 1;
+    return !(turn_error(before, after) <= FEELER_TURN_ERROR);
 }
 
 static int has_external_offset(void) {
@@ -239,17 +316,25 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
         s->speed = speed < 0.0 ? -speed : speed;
     }
     s->feed = c->vel;
+    c->begin = goal;
     /* Rapids and feeds are never blended with each other. */
     c->blends = s->blending == FEELER_BLENDED;
     c->tolerance = tolerance;
-    if (s->blending == FEELER_BLENDED && tolerance == 0.0 && s->purpose != FEELER_RAPID)
+    if (c->blends && tolerance == 0.0 && (s->purpose != FEELER_RAPID || turns(c)))
         c->tolerance = ring->feed_tolerance;
+    if (c->blends && turns(c)) c->tolerance = fmin(c->tolerance, ring->turn_tolerance);
     s->tolerance = c->tolerance;
     s->from_rest = motion_count == 0 && real_tpIsDone(the_tp);
     copy_pose(s->from, &goal);
     copy_pose(s->to, &c->end);
     s->centre[0] = c->centre.x, s->centre[1] = c->centre.y, s->centre[2] = c->centre.z;
     s->normal[0] = c->normal.x, s->normal[1] = c->normal.y, s->normal[2] = c->normal.z;
+
+    s->tool_length = status ? status->tool_offset.tran.z : 0.0;
+    EmcPose const between = pose_between(&goal, &c->end);
+    if (find_joints(&s->joint_from, &goal) && find_joints(&s->joint_between, &between)
+        && find_joints(&s->joint_to, &c->end))
+        s->joints = (uint32_t)settings->numJoints;
 
     c->id = next_id;
     c->tag.packed_flags &= 0xffffffffUL;
@@ -358,18 +443,24 @@ static void fail(TP_STRUCT *tp, struct call const *c, int code) {
     end_program(tp);
 }
 
-static void release_permitted(TP_STRUCT *tp) {
+/* The last motion that the planner may have. */
+static uint64_t last_permitted(void) {
     uint64_t const permit = feeler_load(&ring->permitted);
     uint64_t const permitted = feeler_permitted_number(permit);
-    int const has_external = has_external_offset();
-    feeler_store(&ring->external, (uint64_t)has_external);
     /* Permits of another session, or for motions that do not exist, are none. */
     int const is_valid = permit == feeler_permit(ring->session, permitted)
-                         && permitted <= ring->written && !has_external;
+                         && permitted <= ring->written && !has_external_offset();
+    return is_valid ? permitted : 0;
+}
+
+static void release_permitted(TP_STRUCT *tp) {
+    uint64_t const permitted = last_permitted();
+    feeler_store(&ring->external, (uint64_t)has_external_offset());
     int motions = 0;
     while (call_count > 0 && motions < 8 && !real_tcqFull(&tp->queue)) {
         struct call *c = call_at(0);
-        if (is_motion(c) && (!is_valid || c->number > permitted)) return;
+        if (is_motion(c) && c->number > permitted) return;
+        if (is_motion(c) && must_rest_before(c, &last_passed) && !real_tpIsDone(tp)) return;
         int const result = pass_on(tp, c);
         if (is_motion(c)) {
             /* 0: queued. Positive: the planner found no length in it. */
@@ -379,6 +470,7 @@ static void release_permitted(TP_STRUCT *tp) {
             }
             ++motions;
             --motion_count;
+            last_passed = *c;
             was_stopped = 0;
             feeler_store(&ring->released, c->number);
         }
@@ -394,7 +486,8 @@ static void show_state(TP_STRUCT *tp) {
     last_alive = alive;
     *pins->guard_alive = alive != 0 && now - alive_at < 1000000000LL;
     *pins->latched = feeler_load(&ring->latched) != 0;
-    *pins->holding = motion_count > 0 && real_tpIsDone(tp);
+    *pins->holding =
+        motion_count > 0 && real_tpIsDone(tp) && first_motion()->number > last_permitted();
     if (motion_count > 0) *pins->line = first_motion()->tag.fields[GM_FIELD_LINE_NUMBER];
     if (*pins->clear && !was_clear_pressed) feeler_store(&ring->cleared, ring->cleared + 1);
     was_clear_pressed = *pins->clear;
@@ -503,6 +596,10 @@ int tpAbort(TP_STRUCT *const tp) {
 
 int tpSetPos(TP_STRUCT *const tp, EmcPose const *const pos) {
     if (call_count > 0) drop_calls(tp);
+    /* As after a change of the kinematics: what has been released would be made elsewhere. */
+    EmcPose here;
+    real_tpGetPos(tp, &here);
+    if (!real_tpIsDone(tp) && !is_same_pose(&here, pos)) end_program(tp);
     goal = *pos;
     return real_tpSetPos(tp, pos);
 }
@@ -561,9 +658,12 @@ void tpMotFunctions(void (*dio)(int, char), void (*aio)(int, double), void (*unl
     real_tpMotFunctions(dio, aio, unlock, is_unlocked, vel_limit, acc_limit);
 }
 
-void tpMotData(emcmot_status_t *motion_status, emcmot_config_t *config) {
+void tpMotData(emcmot_status_t *motion_status, emcmot_config_t *motion_config) {
     status = motion_status;
-    real_tpMotData(motion_status, config);
+    settings = motion_config;
+    /* motmod, which calls this, was loaded after the kinematics that it needs. */
+    *(void **)&kinematics = dlsym(RTLD_DEFAULT, "kinematicsInverse");
+    real_tpMotData(motion_status, motion_config);
 }
 
 #define EXPORT(result, name, arguments) EXPORT_SYMBOL(name);
