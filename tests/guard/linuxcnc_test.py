@@ -108,14 +108,14 @@ FIVE_AXES_INI = {
 ROTARY_AXIS = """[AXIS_{letter}]
 MIN_LIMIT = -36000
 MAX_LIMIT = 36000
-MAX_VELOCITY = 100
-MAX_ACCELERATION = 1000
+MAX_VELOCITY = 500
+MAX_ACCELERATION = 5000
 [JOINT_{joint}]
 TYPE = ANGULAR
 HOME = 0
 HOME_SEQUENCE = 0
-MAX_VELOCITY = 100
-MAX_ACCELERATION = 1000
+MAX_VELOCITY = 500
+MAX_ACCELERATION = 5000
 MIN_LIMIT = -36000
 MAX_LIMIT = 36000
 FERROR = 5
@@ -706,7 +706,7 @@ def random_five_axis_program(random):
     lines.append(f"G0 X{random.uniform(60, 110):.3f} Y{random.uniform(-60, 60):.3f} Z{random.uniform(60, 90):.3f}")
     lines.append(FOLLOW_TIP.strip())
     for _ in range(random.randint(4, 12)):
-        place = [random.uniform(60, 170), random.uniform(-75, 75), random.uniform(15, 80)]
+        place = [random.uniform(80, 175), random.uniform(-60, 60), random.uniform(5, 70)]
         words = [f"{axis}{value:.3f}" for axis, value in zip("XYZ", place) if random.random() < 0.6]
         if random.random() < 0.6:
             words.append(f"A{random.uniform(-45, 45):.3f}")
