@@ -1,7 +1,9 @@
 #include "app/guard/guard.h"
 
+#include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,6 +90,16 @@ void take_speeds(core::Machine& machine, const IniFile& ini, double unit) {
         if (const auto speed = value("max_velocity")) machine.axes[i].rapid = 60.0 * *speed;
         if (const auto most = value("max_acceleration")) machine.axes[i].acceleration = *most;
     }
+    if (is_trivial(ini)) return;
+    // Speeds along X, Y and Z of the tip are others of the axes.
+    std::optional<double> fastest, least;
+    for (size_t i = 0; i < 3; ++i) {
+        const core::MachineAxis& axis = machine.axes[i];
+        if (axis.rapid) fastest = std::max(fastest.value_or(0.0), *axis.rapid);
+        if (axis.acceleration) least = std::min(least.value_or(core::infinity), *axis.acceleration);
+    }
+    for (size_t i = 0; i < 3; ++i)
+        machine.axes[i].rapid = fastest, machine.axes[i].acceleration = least;
 }
 
 /// Waits for LinuxCNC to load feeler_tp.
@@ -95,7 +107,8 @@ core::Result<feeler_ring*> awaited_ring(double seconds) {
     const auto end = Clock::now() + std::chrono::duration<double>(seconds); // clock: gives up
     while (!is_interrupted()) {
         auto* const ring = static_cast<feeler_ring*>(
-            core::platform::shared_memory(FEELER_RING_KEY, sizeof(feeler_ring)));
+            // Of an older version, it may be smaller: why_unknown() says so.
+            core::platform::shared_memory(FEELER_RING_KEY, offsetof(feeler_ring, session)));
         const std::string why = ring ? why_unknown(*ring) : "feeler_tp is not loaded";
         if (why.empty()) return ring;
         if (Clock::now() > end) // clock: as above

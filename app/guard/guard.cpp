@@ -67,6 +67,7 @@ Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double fe
     ring_.feed_tolerance = feed_tolerance / unit;
     ring_.turn_tolerance = std::min(feed_tolerance, turn_tolerance) / unit;
     cleared_ = feeler_load(&ring_.cleared);
+    ended_ = feeler_load(&ring_.ended);
     is_latched_ = feeler_load(&ring_.latched) != 0;
     if (is_latched_) check_.refuse_until_drop();
     check_.after_motion = [this](const LiveMotion& motion) {
@@ -85,8 +86,13 @@ Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double fe
     feeler_store(&ring_.read, permitted);
 }
 
-/// Takes note of a violation that the operator has cleared.
+/// Takes note of a violation that the operator has cleared, and of programs that feeler_tp ended.
 void Guard::follow_operator() {
+    const uint64_t ended = feeler_load(&ring_.ended);
+    if (ended != std::exchange(ended_, ended) && tell)
+        tell(
+            "Feeler has ended the program: LinuxCNC's kinematics, their pins or an external offset "
+            "changed while motions were queued.");
     const uint64_t cleared = feeler_load(&ring_.cleared);
     if (cleared == cleared_) return;
     cleared_ = cleared;
@@ -140,7 +146,8 @@ bool Guard::step() {
     const LiveMotion motion = check_.read(ring_.segment[next % FEELER_RING_SEGMENTS]);
     const bool is_dropped =
         next <= feeler_load(&ring_.dropped) && next > feeler_load(&ring_.released);
-    is_disturbed_ = is_disturbed_ || motion.number != next;
+    is_disturbed_ =
+        is_disturbed_ || motion.number != next || feeler_load(&ring_.permitted) != last_permit_;
     if (is_disturbed_) return false;
     has_begun_ = has_begun_ || can_begin();
     if (!is_dropped && (!has_begun_ || !may_permit(motion))) return false;

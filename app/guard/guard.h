@@ -73,7 +73,7 @@ private:
     feeler_ring& ring_;
     LiveCheck check_;
     bool is_latched_ = false;
-    uint64_t cleared_ = 0;
+    uint64_t cleared_ = 0, ended_ = 0;
     std::string reason_, told_; // why nothing is permitted now; and what the operator knows of it
     int64_t since_ = 0;         // milliseconds
     uint64_t session_ = 0, last_permit_ = 0;

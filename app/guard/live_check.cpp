@@ -212,8 +212,9 @@ void LiveCheck::make_part(const LiveMotion& motion, const core::AxisValues& stop
     LiveMotion part = motion;
     std::copy(stopped_at.begin(), stopped_at.end(), std::begin(part.to));
     part.axes_to = kinematics_.axes_at(stopped_at, motion);
-    // How far the tool turned where the path was left is not known, nor the place on an arc.
-    if (turns(motion) || (motion.follows_tip && motion.shape == FEELER_ARC)) return leave(part);
+    // How far other axes were where the path was left is not known, nor the place on an arc.
+    if (moves_others(motion) || (motion.follows_tip && motion.shape == FEELER_ARC))
+        return leave(part);
     const core::Vec3 from = point_of(axis_values(motion.from)),
                      to = point_of(axis_values(motion.to));
     const core::Vec3 there = point_of(stopped_at);
@@ -289,6 +290,9 @@ core::Result<void> LiveCheck::place(const LiveMotion& motion) {
     if (is_after_drop(motion) || motion.from_rest != 0) ahead_->corners.last = {};
     if (is_near(known_values(ahead_->position), known_values(position)) && ahead_->spread.none())
         return {};
+    if (!is_after_drop(motion) && motion.from_rest == 0)
+        return core::fail(core::ErrorCode::unsupported,
+                          "It does not begin where the motion before it ends.");
     // The machine was at rest and was then moved in another way, such as by hand.
     catch_up(motion.number, waiting_.size());
     put_at(*ahead_, position);
@@ -311,8 +315,8 @@ std::string LiveCheck::objection(const LiveMotion& motion) const {
     if (motion.shape < FEELER_LINE || motion.shape > FEELER_TAP || motion.purpose < FEELER_RAPID
         || motion.purpose > FEELER_INDEXER || motion.blending > FEELER_BLENDED)
         return "It is of a kind that is not known.";
-    if (motion.blending == FEELER_BLENDED && (motion.purpose != FEELER_RAPID || turns(motion))
-        && !(motion.tolerance > 0.0))
+    if (motion.blending == FEELER_BLENDED
+        && (motion.purpose != FEELER_RAPID || moves_others(motion)) && !(motion.tolerance > 0.0))
         return "How far its corners may be rounded is not known: it was queued before the guard "
                "ran.";
     if (motion.tool < 0)
@@ -358,6 +362,8 @@ LiveMotion LiveCheck::with_corner(LiveMotion motion) const {
     const LiveMotion& before = waiting_.back().queued;
     if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID))
         return motion;
+    motion.path_error = std::max(motion.path_error, before.path_error);
+    motion.turn_error = std::max(motion.turn_error, before.turn_error);
     // Rapids without a tolerance are rounded as far as speeds demand.
     const bool is_free =
         before.tolerance == 0.0 || (motion.blending == FEELER_BLENDED && motion.tolerance == 0.0);
@@ -386,16 +392,18 @@ LiveAnswer LiveCheck::judge(const LiveMotion& queued) {
     return answer.may_move ? permitted(queued, motion) : refused(std::move(answer));
 }
 
-LiveAnswer LiveCheck::judge_retreat(const LiveMotion& motion) {
-    if (std::string why = begin(motion); !why.empty()) return refused({.reason = std::move(why)});
+LiveAnswer LiveCheck::judge_retreat(const LiveMotion& queued) {
+    if (std::string why = begin(queued); !why.empty()) return refused({.reason = std::move(why)});
+    const LiveMotion motion = with_corner(queued);
     const std::vector<core::Event> events = events_of(motion, *ahead_);
     if (!tool_of(motion, judge_.setup())) {
         LiveAnswer answer = judge_.judge_with_each_tool(events, *ahead_);
         if (!answer.may_move) return refused(std::move(answer));
     }
-    const double rounding = motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0;
+    const double rounding =
+        (motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0) + motion.path_error;
     LiveAnswer answer = judge_.judge_retreat(events, rounding, *ahead_);
-    if (answer.may_move) return permitted(motion, motion);
+    if (answer.may_move) return permitted(queued, motion);
     if (answer.cure.empty())
         answer.cure = "After a violation, only motions that lose no clearance may be made until "
                       "feeler-tp.clear is set.";

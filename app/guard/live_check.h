@@ -28,7 +28,7 @@ public:
 
     /// Checks the next motion. It may move only if it is proven clear and breaks no rule. After one
     /// that may not, none may until the control has dropped it: what follows would start elsewhere.
-    LiveAnswer judge(const LiveMotion& motion);
+    LiveAnswer judge(const LiveMotion& queued);
 
     /// As judge(), after a violation that the operator has not cleared: the motion may move if it
     /// loses no clearance, without cutting. All along it, no pair of bodies is nearer to each other
@@ -36,7 +36,7 @@ public:
     /// stays 10 mm apart and twice its allowance.
     /// Straight up it may leave the stock in any case: a guard that was started anew does not know
     /// what was cut.
-    LiveAnswer judge_retreat(const LiveMotion& motion);
+    LiveAnswer judge_retreat(const LiveMotion& queued);
 
     /// Whether the motions that the control has queued cannot move any more, after a refusal.
     bool is_refused() const { return is_refused_; }

@@ -27,6 +27,11 @@ feeler_segment in_mm(feeler_segment motion, double unit) {
     return motion;
 }
 
+bool turns(const feeler_segment& motion) {
+    return !std::equal(std::begin(motion.from) + 3, std::begin(motion.from) + 6,
+                       std::begin(motion.to) + 3);
+}
+
 /// Whether an axis that lengthens the tool moves while a rotary axis turns: then the tip takes no
 /// straight way.
 bool bends(const LiveMotion& motion, const core::Machine& machine) {
@@ -37,10 +42,9 @@ bool bends(const LiveMotion& motion, const core::Machine& machine) {
 
 } // namespace
 
-bool turns(const feeler_segment& motion) {
-    for (size_t i = 3; i < 6; ++i)
-        if (motion.to[i] != motion.from[i]) return true;
-    return false;
+bool moves_others(const feeler_segment& motion) {
+    return !std::equal(std::begin(motion.from) + 3, std::end(motion.from),
+                       std::begin(motion.to) + 3);
 }
 
 core::AxisValues axis_values(const double (&numbers)[core::axis_count]) {
@@ -89,12 +93,13 @@ std::optional<core::TipPath> ControlKinematics::tip_path(const core::AxisValues&
 
 /// How far the joints are from those of the control, at most, in the mode of the motion; and where.
 std::string ControlKinematics::difference_of(const LiveMotion& motion, double& most) const {
-    core::AxisValues between = axis_values(motion.from);
+    constexpr double offset[] = FEELER_ASIDE;
+    core::AxisValues aside = axis_values(motion.from);
     for (size_t i = 0; i < core::axis_count; ++i)
-        between[i] += FEELER_BETWEEN * (motion.to[i] - between[i]);
+        aside[i] += FEELER_BETWEEN * (motion.to[i] - aside[i]) + (i < 3 ? unit_ * offset[i] : 0.0);
     const std::pair<const double*, core::AxisValues> places[] = {
         {motion.joint_from, axes_at(axis_values(motion.from), motion)},
-        {motion.joint_between, axes_at(between, motion)},
+        {motion.joint_aside, axes_at(aside, motion)},
         {motion.joint_to, axes_at(axis_values(motion.to), motion)},
     };
     std::string where;
@@ -109,7 +114,7 @@ std::string ControlKinematics::difference_of(const LiveMotion& motion, double& m
             const double value = on_control[joint] * (core::is_rotary(axis) ? 1.0 : unit_);
             const double difference = std::abs(value - axes[axis]);
             if (difference <= most) continue;
-            most = difference;
+            most = std::isfinite(difference) ? difference : core::infinity;
             where = fmt::format("{} would be at {:.4f} and not at {:.4f} ({})", letters[joint],
                                 value, axes[axis], core::is_rotary(axis) ? "degrees" : "mm");
         }
@@ -148,7 +153,7 @@ LiveMotion ControlKinematics::read(const feeler_segment& segment) const {
     LiveMotion motion;
     static_cast<feeler_segment&>(motion) = in_mm(segment, unit_);
     if (kinematics_) compare(motion);
-    if (turns(motion) && motion.blending == FEELER_BLENDED) {
+    if (moves_others(motion) && motion.blending == FEELER_BLENDED) {
         motion.path_error = FEELER_TURNING_CORNER * motion.tolerance;
         motion.turn_error = core::radians_of(FEELER_TURN_ERROR);
     }

@@ -15,14 +15,14 @@ namespace app {
 struct LiveMotion : feeler_segment {
     core::AxisValues axes_from{}, axes_to{}; // of the machine; `from` and `to` are the planner's
     bool follows_tip = false; // its path is a line or an arc of the tip, as seen from the work
-    // Where the planner may blend it with another motion that turns: how far the tip may be from
-    // its path, mm, and the rotary axes in all from where they are there, radians.
+    // Where axes besides X, Y and Z move, and the planner may blend the motion: how far the tip may
+    // be from its path, mm, and the rotary axes in all from where they are there, radians.
     double path_error = 0.0, turn_error = 0.0;
     std::string problem; // why it cannot be checked; empty if it can
 };
 
-/// Whether a rotary axis turns.
-bool turns(const feeler_segment& motion);
+/// Whether axes besides X, Y and Z move.
+bool moves_others(const feeler_segment& motion);
 
 core::AxisValues axis_values(const double (&numbers)[core::axis_count]);
 

@@ -127,10 +127,11 @@ CornerReach reach_at_speed(std::span<const Leg> before, std::span<const Leg> aft
     for (size_t i = 0; i < axis_count; ++i)
         if (machine.axes[i].present && !is_rotary(i))
             least = std::min(least, *machine.axes[i].acceleration);
-    const double of_circle = 2.0 / std::numbers::sqrt3 * core::tan(0.5 * *turn);
-    const auto at_speed = [&](double speed) {
-        return speed * speed / least * std::max(1.0, of_circle);
-    };
+    // A blend, or a circle.
+    const double half = 0.5 * *turn;
+    const double of_turn =
+        1.01 * std::max(1.0, 2.0 / std::numbers::sqrt3 * core::sin(half)) / core::cos(half);
+    const auto at_speed = [&](double speed) { return speed * speed / least * of_turn; };
     return {std::min(reach.before, at_speed(speed_on(before))),
             std::min(reach.after, at_speed(speed_on(after)))};
 }

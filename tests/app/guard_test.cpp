@@ -9,6 +9,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -128,6 +129,7 @@ public:
         std::copy(std::begin(stopped_at), std::end(stopped_at), std::begin(motion.stopped_at));
         std::copy(std::begin(goal), std::end(goal), std::begin(motion.from));
         motion.line = static_cast<int32_t>(number);
+        if (std::exchange(was_jogged, false)) motion.from_rest = 1;
         if (ask_kinematics) ask_kinematics(motion);
         ring->segment[number % FEELER_RING_SEGMENTS] = motion;
         if (motion.shape != FEELER_TAP)
@@ -171,7 +173,10 @@ public:
     }
 
     /// The machine is moved by hand, to a place of the tip.
-    void jog(double x, double y, double z) { goal[0] = x, goal[1] = y, goal[2] = z + tip; }
+    void jog(double x, double y, double z) {
+        goal[0] = x, goal[1] = y, goal[2] = z + tip;
+        was_jogged = true;
+    }
 
     std::unique_ptr<feeler_ring> ring = std::make_unique<feeler_ring>();
     feeler_segment next{}; // what the next motion has besides its path
@@ -179,7 +184,7 @@ public:
     double goal[9] = {};
     double stopped_at[9] = {};
     std::optional<uint64_t> follows;
-    bool follows_part = false;
+    bool follows_part = false, was_jogged = false;
 };
 
 class GuardedMachine : public ::testing::Test {
@@ -283,6 +288,15 @@ TEST_F(GuardedMachine, ForgetsWhatWasPermittedAndNotMade) {
     catch_up();
     ASSERT_EQ(made_.size(), 3U); // two whole ones, and the second one up to Z10 before that
     EXPECT_DOUBLE_EQ(made_[1].to[2], 10 + tip);
+}
+
+/// What waits must begin where the motion before it ends.
+TEST_F(GuardedMachine, RefusesAMotionThatBeginsElsewhere) {
+    machine_.rapid(-60, 0, 30);
+    machine_.goal[1] += 0.1;
+    machine_.rapid(-60, 10, 30);
+    EXPECT_EQ(permitted(), 1U);
+    EXPECT_THAT(told_.back(), HasSubstr("does not begin where"));
 }
 
 TEST_F(GuardedMachine, FollowsMotionsByHand) {
@@ -910,7 +924,7 @@ TEST_F(GuardedMachine, EndsWhenTheRingDoesNotHoldTheNextMotion) {
 
 TEST_F(GuardedMachine, KnowsOneVersionOfTheRing) {
     EXPECT_EQ(app::why_unknown(*machine_.ring), "");
-    machine_.ring->version = 2;
+    machine_.ring->version = FEELER_RING_VERSION - 1;
     EXPECT_THAT(app::why_unknown(*machine_.ring), HasSubstr("version"));
     machine_.ring->version = FEELER_RING_VERSION;
     machine_.ring->bytes = 8;
@@ -991,9 +1005,14 @@ HALCMD = setp xyzac-trt-kins.z-offset 15
 )";
 
 /// Its joints, by the formulas of LinuxCNC's trtfuncs.c, at a part of the way of a motion.
-void find_joints(const feeler_segment& motion, double part, double (&joint)[FEELER_JOINTS]) {
+void find_joints(const feeler_segment& motion, double part, bool is_aside,
+                 double (&joint)[FEELER_JOINTS]) {
+    constexpr double aside[] = FEELER_ASIDE;
     double at[9];
-    for (size_t i = 0; i < 9; ++i) at[i] = motion.from[i] + part * (motion.to[i] - motion.from[i]);
+    for (size_t i = 0; i < 9; ++i) {
+        at[i] = motion.from[i] + part * (motion.to[i] - motion.from[i]);
+        if (is_aside && i < 3) at[i] += aside[i];
+    }
     const double a = at[3] * std::numbers::pi / 180.0, c = at[5] * std::numbers::pi / 180.0;
     const double dy = 20.0, dz = 15.0 + motion.tool_length;
     const double x = at[0] - 10.0, y = at[1] + 5.0, z = at[2] + 250.0;
@@ -1029,9 +1048,9 @@ struct RandomMotions {
         machine.next.tool_length = 100.0;
         machine.ask_kinematics = [](feeler_segment& motion) {
             motion.joints = 5;
-            find_joints(motion, 0.0, motion.joint_from);
-            find_joints(motion, FEELER_BETWEEN, motion.joint_between);
-            find_joints(motion, 1.0, motion.joint_to);
+            find_joints(motion, 0.0, false, motion.joint_from);
+            find_joints(motion, FEELER_BETWEEN, true, motion.joint_aside);
+            find_joints(motion, 1.0, false, motion.joint_to);
         };
     }
 
@@ -1152,13 +1171,47 @@ TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblem) {
     EXPECT_GT(stopped_late, 20U);
 }
 
-/// The same on a table that turns, while the control follows the tip.
-TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblemOnFiveAxes) {
-    const test_support::ScopedFolder folder;
+/// The set-up of RandomMotions on five axes, in a folder.
+std::string five_axes_setup(const test_support::ScopedFolder& folder) {
     folder.write("mill.ini", five_axes_ini);
     std::string text = setup_text;
     text.replace(text.find("start = {"), 9, "ini = \"mill.ini\"\nstart = { A = 0, C = 0,");
-    const std::string path = folder.write("mill.toml", text);
+    return folder.write("mill.toml", text);
+}
+
+/// Along an axis of rotation, the control has the same joints whether it follows the tip or not.
+TEST(GuardedMotions, OfWhichTheEndsAreOnAnAxisOfRotationHaveTheirKinematics) {
+    const test_support::ScopedFolder folder;
+    const auto setup = app::read_setup(five_axes_setup(folder), {});
+    ASSERT_TRUE(setup.has_value()) << setup.error().message;
+    const app::ControlKinematics kinematics(1.0, setup->environment.kinematics.value(),
+                                            setup->setup.machine, 0.01);
+    for (const double a : {-30.0, 0.02, 60.0})
+        for (const bool is_full : {false, true}) {
+            feeler_segment arc{};
+            arc.shape = FEELER_ARC;
+            arc.purpose = FEELER_CURVE;
+            arc.tool_length = 100.0;
+            arc.from[0] = 30.0, arc.from[1] = 15.0, arc.from[2] = -135.0, arc.from[3] = a;
+            std::copy(std::begin(arc.from), std::end(arc.from), std::begin(arc.to));
+            if (!is_full) arc.to[0] = -20.0;
+            arc.joints = 5;
+            find_joints(arc, 0.0, false, arc.joint_from);
+            find_joints(arc, FEELER_BETWEEN, true, arc.joint_aside);
+            find_joints(arc, 1.0, false, arc.joint_to);
+            EXPECT_TRUE(std::abs(arc.joint_from[1] - arc.from[1]) < 1e-9); // as the axes would be
+            const app::LiveMotion read = kinematics.read(arc);
+            EXPECT_TRUE(read.follows_tip) << a;
+            EXPECT_EQ(read.problem, "");
+            arc.joint_aside[2] = std::numeric_limits<double>::quiet_NaN();
+            EXPECT_NE(kinematics.read(arc).problem, "");
+        }
+}
+
+/// The same on a table that turns, while the control follows the tip.
+TEST(GuardedPrograms, StopWhereACheckFindsTheFirstProblemOnFiveAxes) {
+    const test_support::ScopedFolder folder;
+    const std::string path = five_axes_setup(folder);
     const auto setup = app::read_setup(path, {});
     ASSERT_TRUE(setup.has_value()) << setup.error().message;
     const app::ControlKinematics kinematics(1.0, setup->environment.kinematics.value(),

@@ -7,10 +7,12 @@
 #include "app/guard/live_motion.h"
 #include "app/setup/hal_settings.h"
 #include "app/setup/linuxcnc_kinematics.h"
+#include "app/setup/program_settings.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "tests/app/linuxcnc_module.h"
 #include "tests/gcode/driven_machine.h"
+#include "tests/support/scoped_folder.h"
 
 namespace app {
 namespace {
@@ -128,17 +130,19 @@ feeler_segment queued(const Example& example, LinuxcncModule& module, const core
     motion.shape = FEELER_LINE;
     motion.tool_length = tool;
     motion.joints = static_cast<uint32_t>(example.coordinates.size());
-    const auto joints = [&](double part, double(&joint)[FEELER_JOINTS]) {
+    const auto joints = [&](double part, bool is_aside, double(&joint)[FEELER_JOINTS]) {
+        constexpr double offset[] = FEELER_ASIDE;
         core::AxisValues at{};
-        for (size_t i = 0; i < core::axis_count; ++i) at[i] = from[i] + part * (to[i] - from[i]);
+        for (size_t i = 0; i < core::axis_count; ++i)
+            at[i] = from[i] + part * (to[i] - from[i]) + (is_aside && i < 3 ? offset[i] : 0.0);
         const EmcPose pose{at[0], at[1], at[2], at[3], at[4], at[5], at[6], at[7], at[8]};
         module.inverse(pose, joint);
     };
     std::copy(from.begin(), from.end(), motion.from);
     std::copy(to.begin(), to.end(), motion.to);
-    joints(0.0, motion.joint_from);
-    joints(FEELER_BETWEEN, motion.joint_between);
-    joints(1.0, motion.joint_to);
+    joints(0.0, false, motion.joint_from);
+    joints(FEELER_BETWEEN, true, motion.joint_aside);
+    joints(1.0, false, motion.joint_to);
     return motion;
 }
 
@@ -414,6 +418,23 @@ TEST(LinuxcncKinematics, KnowWhichOfThemIsActiveAtTheStart) {
     EXPECT_EQ(first("xyzacb_trsrn", ""), Type::axes);
     EXPECT_EQ(linuxcnc_kinematics("xyzac-trt-kins", "", hal, {})->switches.output, 3);
     EXPECT_FALSE(linuxcnc_kinematics("genhexkins", "", hal, {}));
+}
+
+TEST(LinuxcncKinematics, HavePinsInTheUnitOfTheMachine) {
+    const test_support::ScopedFolder folder;
+    const auto pivot = [&](const std::string& unit) {
+        ProgramSettings settings;
+        settings.ini =
+            folder.write("mill.ini", "[TRAJ]\nLINEAR_UNITS = " + unit
+                                         + "\n[KINS]\nKINEMATICS = xyzac-trt-kins\n"
+                                           "[HAL]\nHALCMD = setp xyzac-trt-kins.y-offset 2\n");
+        gcode::Environment environment;
+        const auto applied = apply(settings, environment);
+        EXPECT_TRUE(applied.has_value());
+        return environment.kinematics.value().machine->axes[3].point.y;
+    };
+    EXPECT_DOUBLE_EQ(pivot("mm"), 2.0);
+    EXPECT_DOUBLE_EQ(pivot("inch"), 50.8);
 }
 
 /// The tip of a nutating head, against rotations written down by hand.

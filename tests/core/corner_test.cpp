@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -182,6 +183,29 @@ TEST(CornerRegion, ContainsMachinesThatKeepTheirSpeed) {
     }
     EXPECT_GT(below_half, 300) << "accelerations limit some";
     EXPECT_GT(at_half, 300) << "the length of the moves limits others";
+}
+
+/// How far before corners of long moves LinuxCNC's planner leaves them: measured with its own
+/// tpmod.so (2.9) at 100 mm/s, 1000 mm/s2 and a cycle of 1 ms, in parts of v^2/a.
+TEST(CornerRegion, BeginsWhereThePlannerOfLinuxcncLeavesThePath) {
+    constexpr std::pair<double, double> measured[] = {
+        {5, 0.991},   {15, 1.002},  {30, 1.020},  {45, 1.050},  {60, 1.100},  {75, 1.170},
+        {80, 1.200},  {90, 1.270},  {100, 1.370}, {110, 1.641}, {120, 1.992}, {135, 2.785},
+        {150, 4.306}, {155, 5.203}, {160, 5.951}, {170, 5.455}};
+    for (const auto& [turn, reached] : measured) {
+        const double angle = turn * std::numbers::pi / 180.0;
+        const Vec3 corner(200, 0, 0),
+            end = corner + 200.0 * Vec3(std::cos(angle), std::sin(angle), 0);
+        Leg first = leg({0, 0, 0}, corner), second = leg(corner, end);
+        first.end = second.end = 2.0;
+        const std::vector<Leg> before = {first}, after = {second};
+        const CornerReach reach = reach_at_speed(before, after, machine_with(1000.0));
+        EXPECT_GE(reach.before, 10.0 * reached) << turn;
+        EXPECT_GE(reach.after, 10.0 * reached) << turn;
+        if (turn <= 150.0) {
+            EXPECT_LE(reach.before, 12.5 * reached) << turn;
+        }
+    }
 }
 
 TEST(CornerRegion, ReachesToTheMiddleIfAccelerationsAreNotKnown) {

@@ -690,14 +690,21 @@ def five_axes_compare_the_kinematics(m):
     m.clear()
     set_pin("xyzac-trt-kins.y-offset", "20")
     level(m)
-    # M67 switches the kinematics while the next motion is made.
-    write(m.folder + "/b.ngc", HEAD + MOVE_AXES + "G0 X0 Y0 Z60\nG1 A30 C90 F6000\nM67 E3 Q1\nG1 X80 A0\nX85\nM2\n")
-    m.messages.clear()
-    m.run("b.ngc")
-    m.wait(lambda s: s.interp_state == m.api.INTERP_IDLE or pin("feeler-tp.latched") == "TRUE", "it ends")
-    joints = m.wait_at_rest() and m.status.joint_actual_position[:5]
-    expect(joints[0] < 40, f"it goes on in other kinematics: {joints}")
-    m.abort()
+    # M67 switches the kinematics while the next motion is made, with the table turned and level.
+    for turned, name in (("A30 C90", "b.ngc"), ("A0 C0", "c.ngc")):
+        write(f"{m.folder}/{name}", HEAD + MOVE_AXES + f"G0 X0 Y0 Z60\nG1 {turned} F6000\nM67 E3 Q1\nG1 X80 A0\nX85\nM2\n")
+        m.messages.clear()
+        m.run(name)
+        pause(0.3)
+        m.wait(lambda s: s.interp_state == m.api.INTERP_IDLE or pin("feeler-tp.latched") == "TRUE", "it ends")
+        joints = m.wait_at_rest() and m.status.joint_actual_position[:5]
+        expect(joints[0] < 40, f"it goes on in other kinematics: {joints}")
+        m.wait_told("has ended the program")
+        expect(pin("feeler-tp.latched") == "FALSE", "nothing was refused")
+        level(m)
+        m.mdi("G0 X-5")  # the next motion is made
+        m.wait(lambda s: is_at(s.position, X=-5.0), "it moves again")
+        level(m)
     m.stop_guard()
 
 

@@ -22,7 +22,7 @@
  * degrees. Positions are machine coordinates of X Y Z A B C U V W, as the planner has them: with
  * work offsets and tool offsets in them. With trivkins the axes move there. Other kinematics may
  * make X Y Z those of the tool's tip as seen from the work; what the joints do then is in
- * joint_from, joint_between and joint_to.
+ * joint_from, joint_aside and joint_to.
  */
 #ifndef FEELER_RING_H
 #define FEELER_RING_H
@@ -34,13 +34,15 @@
 #define FEELER_RING_VERSION 2u
 #define FEELER_RING_SEGMENTS 4096u
 #define FEELER_JOINTS 16
-/* Where a rotary axis turns, LinuxCNC leaves a corner by up to this many times its tolerance. */
-#define FEELER_TURNING_CORNER 3.0
-/* A corner of turning motions is only blended if the rotary axes are in all nearer than this to where
- * they would be at the same place of the path, degrees. */
-#define FEELER_TURN_ERROR 0.01
-/* Where on the straight way from `from` to `to` joint_between is: at no simple part of a turn. */
+/* Where joint_aside is: at this part of the straight way from `from` to `to`, which is no simple part
+ * of a turn, and from there this far along X, Y and Z, so that it is near to no axis of rotation. */
 #define FEELER_BETWEEN 0.381966011250105
+#define FEELER_ASIDE {617.0, -468.0, 633.0}
+/* Where axes besides X, Y and Z move, LinuxCNC leaves a corner by up to this many times its tolerance. */
+#define FEELER_TURNING_CORNER 4.0
+/* A corner of such motions is only blended if the rotary axes are in all nearer than this to where they
+ * would be at the same place of the path, degrees, and U V W nearer than the tolerance. */
+#define FEELER_TURN_ERROR 0.01
 
 /* Shape of a path. A tap moves to `to` and back to `from`. */
 enum feeler_shape { FEELER_LINE = 1, FEELER_ARC = 2, FEELER_TAP = 3 };
@@ -78,7 +80,7 @@ struct feeler_segment {
     double tool_length;          /* along Z, in use */
     /* Where the kinematics that LinuxCNC uses put the joints. */
     uint32_t joints; /* 0: they could not be asked, or have no answer */
-    double joint_from[FEELER_JOINTS], joint_between[FEELER_JOINTS], joint_to[FEELER_JOINTS];
+    double joint_from[FEELER_JOINTS], joint_aside[FEELER_JOINTS], joint_to[FEELER_JOINTS];
 };
 
 struct feeler_ring {
@@ -95,7 +97,8 @@ struct feeler_ring {
     uint64_t dropped;   /* motions up to this number that were not released are gone */
     uint64_t cleared;   /* how often the operator cleared a violation (feeler-tp.clear) */
     uint64_t external;  /* 1: an external offset (eoffset) is in use, so nothing is released */
-    uint64_t reserved[8];
+    uint64_t ended;     /* how often feeler_tp ended a program: the kinematics or an offset changed */
+    uint64_t reserved[7];
 
     /* written by the guard */
     uint64_t read;      /* number of the last motion that was read */
@@ -106,7 +109,7 @@ struct feeler_ring {
     /* The tolerance with which feeds are blended where the program states none: with it, how far
      * they are rounded is known. */
     double feed_tolerance;
-    double turn_tolerance; /* the same for motions that turn a rotary axis, at most */
+    double turn_tolerance; /* the same for motions of axes besides X, Y and Z, at most */
     uint64_t reserved_too[7];
 
     struct feeler_segment segment[FEELER_RING_SEGMENTS]; /* number n at n % FEELER_RING_SEGMENTS */

@@ -152,6 +152,8 @@ static EmcPose stopped_at;
 static int is_pausing;     /* by the operator */
 static int was_refused;    /* the planner refused a motion since the last one was accepted */
 static uint64_t released_at_stop = UINT64_MAX; /* motions after `last_begun` were not made */
+static double state_of_queued[FEELER_JOINTS]; /* find_state() for the motions that wait or are made */
+static int was_state_known;
 static struct call last_passed; /* the motion that the planner got last */
 static int was_clear_pressed;
 static uint64_t last_alive;
@@ -182,7 +184,7 @@ static int find_joints(double (*joint)[FEELER_JOINTS], EmcPose const *pose) {
     return 1;
 }
 
-static EmcPose pose_between(EmcPose const *a, EmcPose const *b) {
+static EmcPose pose_aside(EmcPose const *a, EmcPose const *b) {
     EmcPose p;
     double const t = FEELER_BETWEEN;
     p.tran.x = a->tran.x + t * (b->tran.x - a->tran.x);
@@ -194,17 +196,46 @@ static EmcPose pose_between(EmcPose const *a, EmcPose const *b) {
     p.u = a->u + t * (b->u - a->u);
     p.v = a->v + t * (b->v - a->v);
     p.w = a->w + t * (b->w - a->w);
+    double const aside[3] = FEELER_ASIDE;
+    p.tran.x += aside[0], p.tran.y += aside[1], p.tran.z += aside[2];
     return p;
 }
 
-static int turns(struct call const *c) {
-    return c->begin.a != c->end.a || c->begin.b != c->end.b || c->begin.c != c->end.c;
+/* What tells one state of the kinematics from another: where they put the joints at some place. */
+static int find_state(double (*joint)[FEELER_JOINTS]) {
+    EmcPose place;
+    memset(&place, 0, sizeof place);
+    place.tran.x = 311.0, place.tran.y = -173.0, place.tran.z = 229.0;
+    place.a = 31.0, place.b = 43.0, place.c = 59.0;
+    place.u = 11.0, place.v = 13.0, place.w = 17.0;
+    return find_joints(joint, &place);
 }
 
-/* How far the rotary axes may in all be, while a corner is blended, from where they are at the same
- * place of the path, degrees. Measured with the planner (tests/guard): it leaves a corner of the turn f
- * with the tolerance T within 2 T / sin(f/2) of it. */
-static double turn_error(struct call const *before, struct call const *after) {
+/* Whether the kinematics are another ones, or with other pins, than those for which motions were
+ * queued. */
+static int have_kinematics_changed(void) {
+    double now[FEELER_JOINTS];
+    int const is_known = find_state(&now);
+    if (is_known != was_state_known) return 1;
+    for (int i = 0; is_known && i < FEELER_JOINTS; ++i)
+        if (!(fabs(now[i] - state_of_queued[i]) <= 1e-6)) return 1;
+    return 0;
+}
+
+/* Whether axes besides X, Y and Z move. */
+static int moves_others(struct call const *c) {
+    double p[9], q[9];
+    copy_pose(p, &c->begin);
+    copy_pose(q, &c->end);
+    for (int i = 3; i < 9; ++i)
+        if (p[i] != q[i]) return 1;
+    return 0;
+}
+
+/* How far such axes may be, while a corner is blended, from where they are at the same place of the
+ * path: A, B and C in all, degrees, and U, V and W. Measured with the planner (tests/guard): it leaves
+ * a corner of the turn f with the tolerance T within 2 T / sin(f/2) of it. */
+static void find_errors(struct call const *before, struct call const *after, double (*error)[2]) {
     double p[9], q[9], r[9], square_before = 0, square_after = 0, product = 0;
     copy_pose(p, &before->begin);
     copy_pose(q, &before->end);
@@ -215,31 +246,32 @@ static double turn_error(struct call const *before, struct call const *after) {
         product += (q[i] - p[i]) * (r[i] - q[i]);
     }
     double const first = sqrt(square_before), second = sqrt(square_after);
-    double error = 0;
+    (*error)[0] = (*error)[1] = 0;
     if (first < TP_POS_EPSILON || second < TP_POS_EPSILON) {
-        for (int i = 3; i < 6; ++i) error += fabs(q[i] - p[i]) + fabs(r[i] - q[i]);
-        return error;
+        for (int i = 3; i < 9; ++i) (*error)[i / 6] += fabs(q[i] - p[i]) + fabs(r[i] - q[i]);
+        return;
     }
     double const cosine = fmax(-1.0, fmin(1.0, product / (first * second)));
     double const half_sine = sqrt(0.5 * (1.0 - cosine));
     double part = fmin(first, second);
     if (half_sine * part > 2.0 * before->tolerance) part = 2.0 * before->tolerance / half_sine;
-    for (int i = 3; i < 6; ++i) {
+    for (int i = 3; i < 9; ++i) {
         double const rate = (q[i] - p[i]) / first, next = (r[i] - q[i]) / second;
-        error += part * (fabs(next - rate) + fmax(fabs(rate), fabs(next)) * (1.0 - cosine));
+        (*error)[i / 6] += part * (fabs(next - rate) + fmax(fabs(rate), fabs(next)) * (1.0 - cosine));
     }
-    return error;
 }
 
 /* Whether a motion must begin at rest, after another: LinuxCNC would blend the two, and how far the
- * rotary axes are off then is not limited by the tolerance. */
+ * other axes are off then is not limited by the tolerance. */
 static int must_rest_before(struct call const *after, struct call const *before) {
     int const is_rapid = after->type == FEELER_RAPID, was_rapid = before->type == FEELER_RAPID;
-    if (!turns(after) && !turns(before)) return 0;
+    if (!moves_others(after) && !moves_others(before)) return 0;
     if (!before->blends || is_rapid != was_rapid) return 0; /* not blended in any case */
     if (after->what != ADD_LINE || before->what != ADD_LINE) return 1;
-    if (!turns(after) || !turns(before)) return 1;
-    return !(turn_error(before, after) <= FEELER_TURN_ERROR);
+    if (!moves_others(after) || !moves_others(before)) return 1;
+    double error[2];
+    find_errors(before, after, &error);
+    return !(error[0] <= FEELER_TURN_ERROR && error[1] <= before->tolerance);
 }
 
 static int has_external_offset(void) {
@@ -320,9 +352,9 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     /* Rapids and feeds are never blended with each other. */
     c->blends = s->blending == FEELER_BLENDED;
     c->tolerance = tolerance;
-    if (c->blends && tolerance == 0.0 && (s->purpose != FEELER_RAPID || turns(c)))
+    if (c->blends && tolerance == 0.0 && (s->purpose != FEELER_RAPID || moves_others(c)))
         c->tolerance = ring->feed_tolerance;
-    if (c->blends && turns(c)) c->tolerance = fmin(c->tolerance, ring->turn_tolerance);
+    if (c->blends && moves_others(c)) c->tolerance = fmin(c->tolerance, ring->turn_tolerance);
     s->tolerance = c->tolerance;
     s->from_rest = motion_count == 0 && real_tpIsDone(the_tp);
     copy_pose(s->from, &goal);
@@ -330,9 +362,10 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     s->centre[0] = c->centre.x, s->centre[1] = c->centre.y, s->centre[2] = c->centre.z;
     s->normal[0] = c->normal.x, s->normal[1] = c->normal.y, s->normal[2] = c->normal.z;
 
+    if (s->from_rest) was_state_known = find_state(&state_of_queued);
     s->tool_length = status ? status->tool_offset.tran.z : 0.0;
-    EmcPose const between = pose_between(&goal, &c->end);
-    if (find_joints(&s->joint_from, &goal) && find_joints(&s->joint_between, &between)
+    EmcPose const aside = pose_aside(&goal, &c->end);
+    if (find_joints(&s->joint_from, &goal) && find_joints(&s->joint_aside, &aside)
         && find_joints(&s->joint_to, &c->end))
         s->joints = (uint32_t)settings->numJoints;
 
@@ -430,10 +463,12 @@ static void drop_calls(TP_STRUCT *tp) {
     feeler_store(&ring->dropped, ring->written);
 }
 
-/* Stops, and lets LinuxCNC end the program at the next motion, which would start elsewhere. */
+/* Stops, and lets LinuxCNC end the program, whose next motion would start elsewhere. */
 static void end_program(TP_STRUCT *tp) {
     tpAbort(tp);
     was_refused = 1;
+    if (status) status->motionFlag |= EMCMOT_MOTION_ERROR_BIT;
+    feeler_store(&ring->ended, ring->ended + 1);
 }
 
 /* The planner refused a motion that was accepted. What follows would start elsewhere. */
@@ -470,7 +505,7 @@ static void release_permitted(TP_STRUCT *tp) {
             }
             ++motions;
             --motion_count;
-            last_passed = *c;
+            if (result == 0) last_passed = *c;
             was_stopped = 0;
             feeler_store(&ring->released, c->number);
         }
@@ -494,10 +529,11 @@ static void show_state(TP_STRUCT *tp) {
 }
 
 int tpRunCycle(TP_STRUCT *const tp, long period) {
-    if (!is_aborting) release_permitted(tp);
+    if (!is_aborting && !(motion_count > 0 && have_kinematics_changed())) release_permitted(tp);
     int const was_busy = !real_tpIsDone(tp);
     /* What has been released would be made elsewhere. */
     if (was_busy && !is_aborting && has_external_offset()) end_program(tp);
+    if ((was_busy || motion_count > 0) && !is_aborting && have_kinematics_changed()) end_program(tp);
     if (is_pausing && !is_aborting) real_tpPause(tp);
     uint64_t const before = executing(tp);
     int const result = real_tpRunCycle(tp, period);
@@ -595,11 +631,9 @@ int tpAbort(TP_STRUCT *const tp) {
 }
 
 int tpSetPos(TP_STRUCT *const tp, EmcPose const *const pos) {
+    /* As after a change of the kinematics: what was queued would be made elsewhere. */
+    if (motion_count > 0 || !real_tpIsDone(tp)) end_program(tp);
     if (call_count > 0) drop_calls(tp);
-    /* As after a change of the kinematics: what has been released would be made elsewhere. */
-    EmcPose here;
-    real_tpGetPos(tp, &here);
-    if (!real_tpIsDone(tp) && !is_same_pose(&here, pos)) end_program(tp);
     goal = *pos;
     return real_tpSetPos(tp, pos);
 }
