@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "app/base/shipped_files.h"
+#include "app/base/text.h"
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
@@ -25,6 +27,7 @@
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
 #include "core/base/platform.h"
+#include "core/base/text.h"
 
 namespace app {
 namespace {
@@ -39,6 +42,18 @@ struct GuardOptions {
 };
 
 bool is_trivial(const IniFile& ini) { return ini.kinematics == "trivkins"; }
+
+/// Those whose joints are the axes, as trivkins has them by its setting coordinates=XYZ.
+gcode::SwitchableKinematics trivial_kinematics(const IniFile& ini) {
+    gcode::SwitchableKinematics kinematics;
+    kinematics.module = ini.kinematics;
+    kinematics.types = {gcode::SwitchableKinematics::Type::axes};
+    kinematics.coordinates = core::axis_letters;
+    for (const std::string& word : words_of_line(core::upper_case(ini.kinematics_settings)))
+        if (constexpr std::string_view name = "COORDINATES="; word.starts_with(name))
+            kinematics.coordinates = word.substr(name.size());
+    return kinematics;
+}
 
 /// The ini file, if its machine is one that the guard can follow.
 core::Result<IniFile> known_ini(const std::string& path) {
@@ -91,15 +106,20 @@ void take_speeds(core::Machine& machine, const IniFile& ini, double unit) {
         if (const auto most = value("max_acceleration")) machine.axes[i].acceleration = *most;
     }
     if (is_trivial(ini)) return;
-    // Speeds along X, Y and Z of the tip are others of the axes.
-    std::optional<double> fastest, least;
+    // Limits along X, Y and Z of the tip are others along the axes: what counts is how fast the tip
+    // can be, and how slowly it may brake.
+    double square = 0.0;
+    std::optional<double> least;
     for (size_t i = 0; i < 3; ++i) {
         const core::MachineAxis& axis = machine.axes[i];
-        if (axis.rapid) fastest = std::max(fastest.value_or(0.0), *axis.rapid);
+        square += axis.rapid ? *axis.rapid * *axis.rapid : core::infinity;
         if (axis.acceleration) least = std::min(least.value_or(core::infinity), *axis.acceleration);
     }
-    for (size_t i = 0; i < 3; ++i)
-        machine.axes[i].rapid = fastest, machine.axes[i].acceleration = least;
+    for (size_t i = 0; i < 3; ++i) {
+        machine.axes[i].rapid.reset();
+        if (square < core::infinity) machine.axes[i].rapid = std::sqrt(square);
+        machine.axes[i].acceleration = least;
+    }
 }
 
 /// Waits for LinuxCNC to load feeler_tp.
@@ -315,10 +335,9 @@ core::Result<ExitCode> guard_machine(const GuardOptions& options) {
         return core::fail(core::ErrorCode::unsupported,
                           fmt::format("another guard runs: process {}", ring->process));
     FEELER_TRY(ControlStatus status, ControlStatus::start(options.status));
-    ControlKinematics kinematics = is_trivial(ini)
-                                       ? ControlKinematics(unit)
-                                       : ControlKinematics(unit, *setup.environment.kinematics,
-                                                           setup.setup.machine, options.tolerance);
+    ControlKinematics kinematics(
+        unit, is_trivial(ini) ? trivial_kinematics(ini) : *setup.environment.kinematics,
+        setup.setup.machine, options.tolerance);
     GuardRun run(options, setup, *ring, std::move(status), unit, std::move(kinematics));
     run.open_log();
     print_note("watching LinuxCNC\n");

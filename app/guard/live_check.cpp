@@ -85,6 +85,31 @@ double distance_to_segment(const core::Vec3& point, const core::Vec3& a, const c
     return glm::length(point - (a + t * along));
 }
 
+/// Whether a motion that was stopped there has made a part of itself for certain: all axes but X, Y
+/// and Z are where they would be at that place of a line. On arcs that is not looked at.
+bool is_on_the_way(const LiveMotion& motion, const core::AxisValues& stopped_at) {
+    const core::Vec3 from = point_of(axis_values(motion.from));
+    if (motion.shape == FEELER_ARC) return !moves_others(motion) && !motion.follows_tip;
+    const core::Vec3 along = point_of(axis_values(motion.to)) - from;
+    const double square = glm::dot(along, along);
+    size_t longest = 3;
+    for (size_t i = 3; i < core::axis_count; ++i)
+        if (std::abs(motion.to[i] - motion.from[i])
+            > std::abs(motion.to[longest] - motion.from[longest]))
+            longest = i;
+    const double travel = motion.to[longest] - motion.from[longest];
+    const double part = square > 0.0    ? glm::dot(point_of(stopped_at) - from, along) / square
+                        : travel != 0.0 ? (stopped_at[longest] - motion.from[longest]) / travel
+                                        : 0.0;
+    const double t = std::clamp(part, 0.0, 1.0);
+    for (size_t i = 3; i < core::axis_count; ++i) {
+        const double there = motion.from[i] + t * (motion.to[i] - motion.from[i]);
+        const double slack = core::is_rotary(i) ? FEELER_TURN_ERROR : motion.tolerance;
+        if (!(std::abs(stopped_at[i] - there) <= same_place + slack)) return false;
+    }
+    return true;
+}
+
 core::PathModeChange path_mode_of(const LiveMotion& motion) {
     core::PathModeChange mode;
     mode.blending = motion.blending == FEELER_EXACT_STOP   ? core::Blending::exact_stop
@@ -212,9 +237,7 @@ void LiveCheck::make_part(const LiveMotion& motion, const core::AxisValues& stop
     LiveMotion part = motion;
     std::copy(stopped_at.begin(), stopped_at.end(), std::begin(part.to));
     part.axes_to = kinematics_.axes_at(stopped_at, motion);
-    // How far other axes were where the path was left is not known, nor the place on an arc.
-    if (moves_others(motion) || (motion.follows_tip && motion.shape == FEELER_ARC))
-        return leave(part);
+    if (!is_on_the_way(motion, stopped_at)) return leave(part);
     const core::Vec3 from = point_of(axis_values(motion.from)),
                      to = point_of(axis_values(motion.to));
     const core::Vec3 there = point_of(stopped_at);
@@ -360,7 +383,8 @@ LiveMotion LiveCheck::with_corner(LiveMotion motion) const {
     const bool is_rapid = motion.purpose == FEELER_RAPID;
     if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0) return motion;
     const LiveMotion& before = waiting_.back().queued;
-    if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID))
+    if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID)
+        || moves_others(before) != moves_others(motion)) // feeler_tp lets it begin at rest
         return motion;
     motion.path_error = std::max(motion.path_error, before.path_error);
     motion.turn_error = std::max(motion.turn_error, before.turn_error);

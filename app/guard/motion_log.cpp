@@ -1,6 +1,7 @@
 #include "app/guard/motion_log.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <optional>
@@ -32,7 +33,8 @@ struct MotionLog::State {
     std::ofstream file;
     core::AxisValues origin{}; // of the program's coordinates, in machine coordinates
     std::optional<gcode::SwitchableKinematics> kinematics;
-    double length = 0.0; // that is in use, mm
+    double length = 0.0;                            // that is in use, mm
+    std::array<bool, core::axis_count> is_placed{}; // in the first motion: X, Y, Z, rotary axes
     std::optional<LiveMotion> last, refused;
     std::string reason; // of `refused`
 
@@ -45,12 +47,12 @@ struct MotionLog::State {
     void write_motion(const LiveMotion& motion);
 };
 
-/// The words of axes that move, or of X, Y and Z in any case.
+/// The words of axes that move, or of X, Y and Z in any case; at first, of rotary axes as well.
 std::string MotionLog::State::axis_words(const double (&values)[core::axis_count],
                                          const double (&from)[core::axis_count], bool all) const {
     std::string words;
     for (size_t i = 0; i < core::axis_count; ++i)
-        if (values[i] != from[i] || (all && i < 3))
+        if (values[i] != from[i] || (all && (last ? i < 3 : is_placed[i])))
             words += fmt::format(" {}{:.6f}", core::axis_letters[i],
                                  plain(values[i] - origin[i] - (i == 2 ? length : 0.0)));
     return words;
@@ -171,6 +173,8 @@ core::Result<MotionLog> MotionLog::begin(const std::string& path, const SetupFil
     auto state = std::make_unique<State>();
     state->origin = setup.environment.work_offset(offset);
     state->kinematics = setup.environment.kinematics;
+    for (size_t i = 0; i < core::axis_count; ++i)
+        state->is_placed[i] = i < 3 || setup.setup.machine.axes[i].present;
     state->file.open(path, std::ios::binary | std::ios::trunc);
     state->file << comment_of("motions of the machine, recorded by feeler guard") << "\n"
                 << comment_of("set-up: " + setup.path) << "\n"

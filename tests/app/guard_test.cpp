@@ -1024,6 +1024,14 @@ void find_joints(const feeler_segment& motion, double part, bool is_aside,
     joint[4] = at[5];
 }
 
+/// What feeler_tp would write about a motion.
+void ask_five_axes(feeler_segment& motion) {
+    motion.joints = 5;
+    find_joints(motion, 0.0, false, motion.joint_from);
+    find_joints(motion, FEELER_BETWEEN, true, motion.joint_aside);
+    find_joints(motion, 1.0, false, motion.joint_to);
+}
+
 /// A program of random lines and arcs, and the same motions as LinuxCNC queues them; of the tip of
 /// a tool on a table that turns, if `turns`.
 struct RandomMotions {
@@ -1046,12 +1054,7 @@ struct RandomMotions {
     void follow_tip() {
         program += "M68 E3 Q1\nM66 E0 L0\n";
         machine.next.tool_length = 100.0;
-        machine.ask_kinematics = [](feeler_segment& motion) {
-            motion.joints = 5;
-            find_joints(motion, 0.0, false, motion.joint_from);
-            find_joints(motion, FEELER_BETWEEN, true, motion.joint_aside);
-            find_joints(motion, 1.0, false, motion.joint_to);
-        };
+        machine.ask_kinematics = ask_five_axes;
     }
 
     /// Turns the table in the next motion, sometimes. The words for that.
@@ -1195,10 +1198,7 @@ TEST(GuardedMotions, OfWhichTheEndsAreOnAnAxisOfRotationHaveTheirKinematics) {
             arc.from[0] = 30.0, arc.from[1] = 15.0, arc.from[2] = -135.0, arc.from[3] = a;
             std::copy(std::begin(arc.from), std::end(arc.from), std::begin(arc.to));
             if (!is_full) arc.to[0] = -20.0;
-            arc.joints = 5;
-            find_joints(arc, 0.0, false, arc.joint_from);
-            find_joints(arc, FEELER_BETWEEN, true, arc.joint_aside);
-            find_joints(arc, 1.0, false, arc.joint_to);
+            ask_five_axes(arc);
             EXPECT_TRUE(std::abs(arc.joint_from[1] - arc.from[1]) < 1e-9); // as the axes would be
             const app::LiveMotion read = kinematics.read(arc);
             EXPECT_TRUE(read.follows_tip) << a;
@@ -1206,6 +1206,69 @@ TEST(GuardedMotions, OfWhichTheEndsAreOnAnAxisOfRotationHaveTheirKinematics) {
             arc.joint_aside[2] = std::numeric_limits<double>::quiet_NaN();
             EXPECT_NE(kinematics.read(arc).problem, "");
         }
+}
+
+/// A motion that may be blended while a rotary axis turns counts as four times its tolerance off
+/// its path, and as far off as the one before it.
+TEST(GuardedMotions, CountAsFarOffTheirPathAsTurningCornersAre) {
+    const test_support::ScopedFolder folder;
+    const auto setup = app::read_setup(five_axes_setup(folder), {});
+    ASSERT_TRUE(setup.has_value()) << setup.error().message;
+    const app::ControlKinematics kinematics(1.0, setup->environment.kinematics.value(),
+                                            setup->setup.machine, 0.01);
+    // Permits for motions beside the clamp, which is at X60, to an end this far from the tool.
+    const auto permits = [&](uint32_t first, uint32_t second, double gap) {
+        Machine machine;
+        machine.ask_kinematics = ask_five_axes;
+        machine.next.tool_length = 100.0;
+        machine.next.tolerance = 0.02;
+        const auto move = [&](double x, double y, double c, uint32_t blending, uint32_t purpose) {
+            machine.next.blending = blending;
+            std::fill(std::begin(machine.next.to), std::end(machine.next.to), 0.0);
+            machine.next.to[5] = c;
+            machine.line(x, y, 10, purpose);
+        };
+        move(40, -10, 0, FEELER_EXACT_STOP, FEELER_RAPID);
+        move(52.5, -10, 0.5, first, FEELER_FEED);
+        move(55 - gap, 10, 1, second, FEELER_FEED);
+        app::Guard guard(setup->setup, *machine.ring, 1.0, 0.1, kinematics);
+        while (guard.has_motion() && guard.step()) {
+        }
+        return machine.permitted();
+    };
+    EXPECT_EQ(permits(FEELER_EXACT_PATH, FEELER_EXACT_PATH, 2.05), 3U);
+    EXPECT_EQ(permits(FEELER_EXACT_PATH, FEELER_BLENDED, 2.05), 2U);
+    EXPECT_EQ(permits(FEELER_BLENDED, FEELER_EXACT_PATH, 2.05), 2U);
+    EXPECT_EQ(permits(FEELER_BLENDED, FEELER_BLENDED, 2.2), 3U);
+}
+
+/// A cut that was ended on its way while the table turned counts as far as it went, if the table
+/// was where it belongs there.
+TEST(GuardedMotions, CountAsCutUpToWhereTheyWereEnded) {
+    const test_support::ScopedFolder folder;
+    const auto setup = app::read_setup(five_axes_setup(folder), {});
+    ASSERT_TRUE(setup.has_value()) << setup.error().message;
+    const app::ControlKinematics kinematics(1.0, setup->environment.kinematics.value(),
+                                            setup->setup.machine, 0.01);
+    for (const double turned : {0.25, 0.35}) {
+        Machine machine;
+        machine.ask_kinematics = ask_five_axes;
+        machine.next.tool_length = 100.0;
+        machine.rapid(-70, 0, -5);
+        machine.next.to[5] = 0.5;
+        const uint64_t cut = machine.line(20, 0, -5);
+        app::Guard guard(setup->setup, *machine.ring, 1.0, 0.1, kinematics);
+        const auto permitted = [&] {
+            while (guard.has_motion() && guard.step()) {
+            }
+            return machine.permitted();
+        };
+        EXPECT_EQ(permitted(), cut);
+        machine.abort(cut, -25, 0, -5); // half-way
+        machine.stopped_at[5] = machine.goal[5] = machine.next.to[5] = turned;
+        const uint64_t back = machine.rapid(-70, 0, -5);
+        EXPECT_EQ(permitted(), turned == 0.25 ? back : cut);
+    }
 }
 
 /// The same on a table that turns, while the control follows the tip.
@@ -1314,6 +1377,29 @@ TEST(GuardCommand, NamesWhatItCannotWorkWith) {
         "direction = [-1, 0, 0]\npoint = [0, 19, 0]\n";
     EXPECT_THAT(refusal(setup_text + "[[machine.axis]]\n" + rotary, five_axes),
                 HasSubstr("rotary axes are not where xyzac-trt-kins"));
+}
+
+TEST(MotionLog, BeginsWithThePlacesOfAllAxes) {
+    const test_support::ScopedFolder folder;
+    const auto setup = app::read_setup(five_axes_setup(folder), {});
+    ASSERT_TRUE(setup.has_value()) << setup.error().message;
+    const app::ControlKinematics kinematics(1.0, setup->environment.kinematics.value(),
+                                            setup->setup.machine, 0.01);
+    Machine machine;
+    machine.ask_kinematics = ask_five_axes;
+    machine.next.tool_length = 100.0;
+    machine.goal[3] = machine.next.to[3] = 30.0;
+    machine.rapid(10, 0, 60);
+    machine.rapid(20, 0, 60);
+    {
+        auto log = app::MotionLog::begin(folder / "log.ngc", *setup);
+        ASSERT_TRUE(log.has_value());
+        for (const uint64_t number : {1, 2})
+            log->add(kinematics.read(machine.ring->segment[number]));
+    }
+    const std::string text = core::file_bytes(folder / "log.ngc").value();
+    EXPECT_THAT(text, HasSubstr("G43.1 Z100.000000\nM68 E3 Q1\nM66 E0 L0\n"));
+    EXPECT_THAT(text, HasSubstr(" A30.000000 C0.000000\n"));
 }
 
 TEST(MotionLog, WritesARefusalBehindTheMotionsBeforeIt) {

@@ -305,6 +305,7 @@ static void counts_no_motion_that_the_planner_refuses(void) {
     permit(ring->written);
     cycle(3000);
     EXPECT(x_of() == 10.0);
+    EXPECT(ring->ended == 0); /* that is another matter */
 }
 
 static void keeps_a_pause_while_motions_wait(void) {
@@ -538,16 +539,17 @@ static void ends_the_program_when_the_kinematics_change(void) {
 
 /* Nor if the position stays the same, as with rotary axes at 0, at rest or on the way. */
 static void ends_the_program_at_a_switch_in_place(void) {
-    for (int is_moving = 0; is_moving < 2; ++is_moving) {
+    for (int round = 0; round < 4; ++round) {
+        int const is_moving = round % 2, is_same = round / 2; /* kinematics */
         EmcPose here;
         add_line(100, 0, 0);
         add_line(200, 0, 0);
-        permit(ring->written - 1);
+        permit(ring->written - (is_same ? 0 : 1));
         if (!is_moving) tpPause(&tp);
         cycle(200);
         uint64_t const ended = ring->ended;
         tpGetPos(&tp, &here);
-        joint_offset += 1.0;
+        if (!is_same) joint_offset += 1.0;
         tpSetPos(&tp, &here);
         EXPECT(ring->ended == ended + 1 && (motion.motionFlag & EMCMOT_MOTION_ERROR_BIT));
         EXPECT(add_line(300, 0, 0) == TP_ERR_FAIL);
@@ -556,11 +558,20 @@ static void ends_the_program_at_a_switch_in_place(void) {
         tpAbort(&tp); /* as LinuxCNC does after an error */
         motion.motionFlag = 0;
         cycle(5);
-        EXPECT(add_line(0, 10.0 + is_moving, 0) == TP_ERR_OK);
+        EXPECT(add_line(0, 10.0 + round, 0) == TP_ERR_OK);
         permit(ring->written);
         cycle(3000);
         EXPECT(tpIsDone(&tp) && fabs(x_of()) < 1e-9);
     }
+}
+
+/* A position that is set while motions only wait. */
+static void ends_the_program_when_a_position_is_set(void) {
+    EmcPose const there = at(5, 0, 0);
+    add_line(100, 0, 0);
+    cycle(5);
+    tpSetPos(&tp, &there);
+    EXPECT(ring->ended == 1 && add_line(100, 0, 0) == TP_ERR_FAIL);
 }
 
 /* Another pin of the kinematics, while motions wait or are made. */
@@ -631,7 +642,7 @@ static void leaves_turning_corners_by_little(void) {
     int smooth = 0, stopped = 0, sharp = 0, blended = 0;
     double farthest = 0, turned = 0;
     for (int k = 0; k < 3000; ++k) {
-        int const is_smooth = k % 2;
+        int const is_smooth = k % 2, is_u_only = k % 6 == 0;
         double const turn = is_smooth ? uniform(-0.02, 0.02) : uniform(-3, 3);
         double const heading = uniform(-3, 3), rate = uniform(-1, 1), swing = uniform(-1, 1);
         double const length = pow(10, is_smooth ? uniform(-1, -0.3) : uniform(-1, 1.3));
@@ -642,8 +653,8 @@ static void leaves_turning_corners_by_little(void) {
             pose[i] = pose[i - 1];
             pose[i].tran.x += l * cos(way), pose[i].tran.y += l * sin(way);
             pose[i].tran.z += is_smooth ? 0 : uniform(-1, 1) * l;
-            pose[i].a += is_smooth ? rate * l * more : rand() % 4 ? rate * more : 0;
-            pose[i].c += is_smooth ? swing * l * more : rand() % 4 ? swing * more : 0;
+            pose[i].a += is_smooth ? rate * l * more : rand() % 4 && !is_u_only ? rate * more : 0;
+            pose[i].c += is_smooth ? swing * l * more : rand() % 4 && !is_u_only ? swing * more : 0;
             pose[i].u += is_smooth ? 0.3 * l * more : rand() % 3 ? 0 : swing * more;
             tpSetId(&tp, ++line_number);
             EXPECT(tpAddLine(&tp, pose[i], 2, pow(10, uniform(0.5, 2)), 100,
@@ -654,12 +665,14 @@ static void leaves_turning_corners_by_little(void) {
                                || pose[1].u != pose[0].u || pose[2].u != pose[1].u;
         double const most = last_segment()->tolerance * (FEELER_TURNING_CORNER - 1.0);
         permit(ring->written);
+        if (is_smooth) EXPECT(last_segment()->tolerance == ring->turn_tolerance);
         int rests = 0;
         for (int i = 0; i < 200000; ++i) {
             cycle(1);
             EmcPose now;
             tpGetPos(&tp, &now);
             rests += motion_count > 0 && real_tpIsDone(&tp) && i > 5;
+            EXPECT(!*pins->holding);
             double off[2];
             double const angle = fmin(off_line(&now, &pose[0], &pose[1], most, &off[0]),
                                       off_line(&now, &pose[1], &pose[2], most, &off[1]));
@@ -679,6 +692,26 @@ static void leaves_turning_corners_by_little(void) {
     EXPECT(farthest <= 1.0 && turned <= 1.0);
     EXPECT(stopped < smooth / 20);
     EXPECT(farthest > 0.2 && turned > 0.01); /* it does blend */
+}
+
+/* A straight path of rotary axes alone cannot be left. */
+static void passes_blocks_of_a_rotary_axis_without_a_stop(void) {
+    ring->feed_tolerance = 0.1;
+    ring->turn_tolerance = 0.02;
+    EmcPose pose = at(0, 0, 0);
+    for (int i = 0; i < 20; ++i) {
+        pose.a += 1.0, pose.c += 0.5;
+        EXPECT(tpAddLine(&tp, pose, 2, 30, 100, 1000, 0xff, 0, -1, tag) == TP_ERR_OK);
+    }
+    pose.c += 5.0; /* another direction */
+    EXPECT(tpAddLine(&tp, pose, 2, 30, 100, 1000, 0xff, 0, -1, tag) == TP_ERR_OK);
+    permit(ring->written);
+    int rests = 0;
+    for (int i = 0; i < 100000 && !(i > 5 && tpIsDone(&tp)); ++i) {
+        cycle(1);
+        rests += i > 5 && motion_count > 0 && real_tpIsDone(&tp);
+    }
+    EXPECT(tpIsDone(&tp) && rests == 1);
 }
 
 int main(int count, char **words) {
@@ -710,7 +743,9 @@ int main(int count, char **words) {
         CASE(asks_the_kinematics),
         CASE(ends_the_program_at_a_switch_in_place),
         CASE(ends_the_program_when_a_pin_changes),
+        CASE(ends_the_program_when_a_position_is_set),
         CASE(leaves_turning_corners_by_little),
+        CASE(passes_blocks_of_a_rotary_axis_without_a_stop),
         CASE(ends_the_program_when_the_kinematics_change),
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {

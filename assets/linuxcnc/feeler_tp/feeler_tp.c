@@ -245,10 +245,23 @@ static void find_errors(struct call const *before, struct call const *after, dou
         square_after += (r[i] - q[i]) * (r[i] - q[i]);
         product += (q[i] - p[i]) * (r[i] - q[i]);
     }
-    double const first = sqrt(square_before), second = sqrt(square_after);
+    double first = sqrt(square_before), second = sqrt(square_after);
+    int const begins = first < TP_POS_EPSILON, ends = second < TP_POS_EPSILON; /* without X, Y, Z */
     (*error)[0] = (*error)[1] = 0;
-    if (first < TP_POS_EPSILON || second < TP_POS_EPSILON) {
+    if (begins != ends) {
         for (int i = 3; i < 9; ++i) (*error)[i / 6] += fabs(q[i] - p[i]) + fabs(r[i] - q[i]);
+        return;
+    }
+    if (begins) { /* a straight path of the other axes cannot be left */
+        square_before = square_after = 0;
+        for (int i = 3; i < 9; ++i) {
+            square_before += (q[i] - p[i]) * (q[i] - p[i]);
+            square_after += (r[i] - q[i]) * (r[i] - q[i]);
+        }
+        first = sqrt(square_before), second = sqrt(square_after);
+        for (int i = 3; i < 9; ++i)
+            (*error)[i / 6] +=
+                fmin(first, second) * fabs((r[i] - q[i]) / second - (q[i] - p[i]) / first);
         return;
     }
     double const cosine = fmax(-1.0, fmin(1.0, product / (first * second)));
@@ -468,6 +481,11 @@ static void end_program(TP_STRUCT *tp) {
     tpAbort(tp);
     was_refused = 1;
     if (status) status->motionFlag |= EMCMOT_MOTION_ERROR_BIT;
+}
+
+/* What was queued would be made elsewhere. */
+static void end_program_at_change(TP_STRUCT *tp) {
+    end_program(tp);
     feeler_store(&ring->ended, ring->ended + 1);
 }
 
@@ -529,11 +547,11 @@ static void show_state(TP_STRUCT *tp) {
 }
 
 int tpRunCycle(TP_STRUCT *const tp, long period) {
-    if (!is_aborting && !(motion_count > 0 && have_kinematics_changed())) release_permitted(tp);
+    int const has_motions = motion_count > 0 || !real_tpIsDone(tp);
+    if (has_motions && !is_aborting && have_kinematics_changed()) end_program_at_change(tp);
+    if (!is_aborting) release_permitted(tp);
     int const was_busy = !real_tpIsDone(tp);
-    /* What has been released would be made elsewhere. */
-    if (was_busy && !is_aborting && has_external_offset()) end_program(tp);
-    if ((was_busy || motion_count > 0) && !is_aborting && have_kinematics_changed()) end_program(tp);
+    if (was_busy && !is_aborting && has_external_offset()) end_program_at_change(tp);
     if (is_pausing && !is_aborting) real_tpPause(tp);
     uint64_t const before = executing(tp);
     int const result = real_tpRunCycle(tp, period);
@@ -631,9 +649,11 @@ int tpAbort(TP_STRUCT *const tp) {
 }
 
 int tpSetPos(TP_STRUCT *const tp, EmcPose const *const pos) {
-    /* As after a change of the kinematics: what was queued would be made elsewhere. */
-    if (motion_count > 0 || !real_tpIsDone(tp)) end_program(tp);
-    if (call_count > 0) drop_calls(tp);
+    /* As after a change of the kinematics. */
+    if (motion_count > 0 || !real_tpIsDone(tp))
+        end_program_at_change(tp);
+    else if (call_count > 0)
+        drop_calls(tp);
     goal = *pos;
     return real_tpSetPos(tp, pos);
 }
