@@ -31,11 +31,12 @@ public:
     /// The ring must outlive the object. It is taken over where an earlier guard has left it: the
     /// motions that wait are checked. `unit`: mm per unit of the machine's lengths.
     /// `feed_tolerance`: with which feeds are blended where a program states none, mm.
-    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance)
-        : Guard(setup, ring, unit, feed_tolerance, ControlKinematics(unit)) {}
-    /// For kinematics other than trivkins.
+    /// `kinematics`: with which motions are read and compared.
     Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance,
           ControlKinematics kinematics);
+    /// The planner's positions are those of the axes, and joints are not compared.
+    Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance)
+        : Guard(setup, ring, unit, feed_tolerance, ControlKinematics(unit)) {}
 
     /// Why a motion may not be permitted now, such as a work offset that differs from the set-up;
     /// empty if there is no reason. The motion waits as long as there is one.

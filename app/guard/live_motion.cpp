@@ -91,8 +91,8 @@ std::optional<core::TipPath> ControlKinematics::tip_path(const core::AxisValues&
                          core::tip_position(*machine_, to, length), length};
 }
 
-/// How far the joints are from those of the control, at most, in the mode of the motion; and where.
-std::string ControlKinematics::difference_of(const LiveMotion& motion, double& most) const {
+/// Between the joints of the control and those of the set-up, in the mode of the motion.
+ControlKinematics::Difference ControlKinematics::difference_of(const LiveMotion& motion) const {
     constexpr double offset[] = FEELER_ASIDE;
     core::AxisValues aside = axis_values(motion.from);
     for (size_t i = 0; i < core::axis_count; ++i)
@@ -102,8 +102,7 @@ std::string ControlKinematics::difference_of(const LiveMotion& motion, double& m
         {motion.joint_aside, axes_at(aside, motion)},
         {motion.joint_to, axes_at(axis_values(motion.to), motion)},
     };
-    std::string where;
-    most = -1.0;
+    Difference largest;
     const std::string& letters = kinematics_->coordinates;
     const size_t joints =
         std::min({letters.size(), size_t{motion.joints}, std::size(motion.joint_to)});
@@ -113,12 +112,11 @@ std::string ControlKinematics::difference_of(const LiveMotion& motion, double& m
             if (axis >= core::axis_count) continue;
             const double value = on_control[joint] * (core::is_rotary(axis) ? 1.0 : unit_);
             const double difference = std::abs(value - axes[axis]);
-            if (difference <= most) continue;
-            most = std::isfinite(difference) ? difference : core::infinity;
-            where = fmt::format("{} would be at {:.4f} and not at {:.4f} ({})", letters[joint],
-                                value, axes[axis], core::is_rotary(axis) ? "degrees" : "mm");
+            if (difference <= largest.most) continue;
+            largest = {std::isfinite(difference) ? difference : core::infinity, letters[joint],
+                       value, axes[axis]};
         }
-    return where;
+    return largest;
 }
 
 /// Finds out in which mode the control makes a motion.
@@ -128,25 +126,26 @@ void ControlKinematics::compare(LiveMotion& motion) const {
         return;
     }
     using Type = gcode::SwitchableKinematics::Type;
-    double least = core::infinity;
-    std::string where;
+    std::optional<Difference> least;
     bool is_tip = false;
     for (const Type type : {Type::axes, Type::tip}) {
         const auto& types = kinematics_->types;
         if (std::find(types.begin(), types.end(), type) == types.end()) continue;
         motion.follows_tip = type == Type::tip;
-        double most = 0.0;
-        std::string there = difference_of(motion, most);
-        if (!(most < least) || most < 0.0) continue;
-        least = most;
-        where = std::move(there);
+        const Difference difference = difference_of(motion);
+        if (least && !(difference.most < least->most)) continue;
+        least = difference;
         is_tip = motion.follows_tip;
     }
     motion.follows_tip = is_tip;
-    if (!(least <= tolerance_))
-        motion.problem =
-            fmt::format("LinuxCNC's kinematics are not those of the set-up: by them, {}.",
-                        where.empty() ? "no joint is known" : where);
+    if (!least || least->most < 0.0)
+        motion.problem = "None of LinuxCNC's joints is one of the set-up.";
+    else if (!(least->most <= tolerance_))
+        motion.problem = fmt::format(
+            "LinuxCNC's kinematics are not those of the set-up: by them, {} would be at {:.4f} and "
+            "not at {:.4f} ({}).",
+            least->letter, least->on_control, least->in_setup,
+            core::is_rotary(core::axis_letters.find(least->letter)) ? "degrees" : "mm");
 }
 
 LiveMotion ControlKinematics::read(const feeler_segment& segment) const {

@@ -33,7 +33,8 @@ bool is_after_drop(const feeler_segment& motion);
 /// What the positions of LinuxCNC's planner mean for the axes of the machine.
 class ControlKinematics {
 public:
-    /// They are those of the axes (trivkins). `unit`: mm per unit of the machine's lengths.
+    /// They are those of the axes, and nothing is compared. `unit`: mm per unit of the machine's
+    /// lengths.
     explicit ControlKinematics(double unit) : unit_(unit) {}
     /// As `kinematics` of the environment has it, with the rotary axes of this machine. Each motion
     /// is compared with what the control's own kinematics make of it: joints may differ by
@@ -53,8 +54,14 @@ public:
                                           const LiveMotion& motion) const;
 
 private:
+    /// Where a joint is farthest from where it would be.
+    struct Difference {
+        double most = -1.0; // mm or degrees; below 0: no joint is known
+        char letter = 0;
+        double on_control = 0.0, in_setup = 0.0;
+    };
+    Difference difference_of(const LiveMotion& motion) const;
     void compare(LiveMotion& motion) const;
-    std::string difference_of(const LiveMotion& motion, double& most) const;
 
     double unit_ = 1.0, tolerance_ = 0.0;
     std::optional<gcode::SwitchableKinematics> kinematics_;

@@ -1208,6 +1208,37 @@ TEST(GuardedMotions, OfWhichTheEndsAreOnAnAxisOfRotationHaveTheirKinematics) {
         }
 }
 
+/// With trivkins, each joint is where its letter says, also where two have the same.
+TEST(GuardedMotions, OfOtherKinematicsThanTheIniFileHasAreRefused) {
+    gcode::SwitchableKinematics trivial;
+    trivial.types = {gcode::SwitchableKinematics::Type::axes};
+    trivial.coordinates = "XYYZAC";
+    const app::ControlKinematics kinematics(25.4, trivial, setup_of(setup_text).setup.machine,
+                                            0.01);
+    feeler_segment line{};
+    line.shape = FEELER_LINE;
+    EXPECT_THAT(kinematics.read(line).problem, HasSubstr("could not be asked"));
+    constexpr double aside[] = FEELER_ASIDE;
+    line.joints = 6;
+    line.to[0] = 10.0, line.to[3] = line.from[3] = 30.0;
+    const size_t axes[] = {0, 1, 1, 2, 3, 5};
+    for (size_t joint = 0; joint < 6; ++joint) {
+        const size_t axis = axes[joint];
+        line.joint_from[joint] = line.from[axis];
+        line.joint_to[joint] = line.to[axis];
+        line.joint_aside[joint] = line.from[axis]
+                                  + FEELER_BETWEEN * (line.to[axis] - line.from[axis])
+                                  + (axis < 3 ? aside[axis] : 0.0);
+    }
+    const app::LiveMotion read = kinematics.read(line);
+    EXPECT_EQ(read.problem, "");
+    EXPECT_FALSE(read.follows_tip);
+    EXPECT_DOUBLE_EQ(read.axes_to[0], 254.0);
+    line.joint_aside[2] += 0.001; // inches
+    EXPECT_THAT(kinematics.read(line).problem,
+                AllOf(HasSubstr("Y would be at -11887.1746"), HasSubstr("-11887.2000 (mm)")));
+}
+
 /// A motion that may be blended while a rotary axis turns counts as four times its tolerance off
 /// its path, and as far off as the one before it.
 TEST(GuardedMotions, CountAsFarOffTheirPathAsTurningCornersAre) {
