@@ -496,19 +496,18 @@ def random_program(random):
     return HEAD + "\n".join(lines) + "\nM2\n"
 
 
-@scenario
-def keeps_its_distance_in_random_motion(m):
-    """In no servo cycle is the tool nearer to the clamp than the set-up allows, however corners are rounded."""
+def run_random_programs(m, make_program, retreat, leave, rounds):
+    """Runs random programs, of which some are held; then `retreat` is made by MDI, at times, and `leave` ends the round."""
     import random as source
 
-    rounds = int(os.environ.get("FEELER_GUARD_ROUNDS", "15"))
+    rounds = int(os.environ.get("FEELER_GUARD_ROUNDS", rounds))
     random = source.Random(int(os.environ.get("FEELER_GUARD_SEED", "1")))
     m.start_guard()
     m.mdi("M61 Q1")
     m.wait_at_rest()
     held = 0
     for i in range(rounds):
-        write(f"{m.folder}/{i}.ngc", random_program(random))
+        write(f"{m.folder}/{i}.ngc", make_program(random))
         m.messages.clear()
         m.run(f"{i}.ngc")
         pause(0.3)
@@ -520,16 +519,28 @@ def keeps_its_distance_in_random_motion(m):
             m.wait_at_rest()
             m.abort()
             if random.random() < 0.5:
-                m.mdi(f"G0 X{random.uniform(85, 175):.3f} Y{random.uniform(-75, 75):.3f}")  # while it is latched
+                m.mdi(retreat(random))  # while it is latched
                 m.wait_at_rest()
                 m.abort()
             m.clear()
+        expect(not m.told("kinematics"), f"its kinematics are not known: {m.messages}")
         m.abort()
+        leave()
+    m.stop_guard()
+    expect(rounds / 5 < held < rounds, f"{held} of {rounds} programs were held")
+
+
+@scenario
+def keeps_its_distance_in_random_motion(m):
+    """In no servo cycle is the tool nearer to the clamp than the set-up allows, however corners are rounded."""
+
+    def leave():
         m.mdi("G0 Z60")
         m.wait_at_rest()
         m.abort()
-    m.stop_guard()
-    expect(rounds / 5 < held < rounds, f"{held} of {rounds} programs were held")
+
+    run_random_programs(
+        m, random_program, lambda random: f"G0 X{random.uniform(85, 175):.3f} Y{random.uniform(-75, 75):.3f}", leave, 15)
 
 
 def tilted_back(joints, length):
@@ -732,38 +743,15 @@ def random_five_axis_program(random):
 @scenario
 def five_axes_keep_their_distance(m):
     """Random motion in both kinematics: in no servo cycle is the tool nearer to the clamp than the set-up allows."""
-    import random as source
 
-    rounds = int(os.environ.get("FEELER_GUARD_ROUNDS", "6"))
-    random = source.Random(int(os.environ.get("FEELER_GUARD_SEED", "1")))
-    m.start_guard()
-    m.mdi("M61 Q1")
-    m.wait_at_rest()
-    held = 0
-    for i in range(rounds):
-        write(f"{m.folder}/{i}.ngc", random_five_axis_program(random))
-        m.messages.clear()
-        m.run(f"{i}.ngc")
-        pause(0.3)
-        m.wait(lambda s: pin("feeler-tp.holding") == "TRUE" or s.interp_state == m.api.INTERP_IDLE and s.inpos, f"{i}.ngc ends")
-        if random.random() < 0.3:
-            m.abort()
-        if pin("feeler-tp.latched") == "TRUE":
-            held += 1
-            m.wait_at_rest()
-            m.abort()
-            if random.random() < 0.5:
-                m.mdi(f"G0 X{random.uniform(85, 175):.3f} A{random.uniform(-45, 45):.3f}")  # while it is latched
-                m.wait_at_rest()
-                m.abort()
-            m.clear()
-        expect(not m.told("kinematics"), f"its kinematics are not known: {m.messages}")
-        m.abort()
+    def leave():
         set_pin("sampler.0.enable", "0")  # what is moved by hand does not count
         level(m)
         set_pin("sampler.0.enable", "1")
-    m.stop_guard()
-    expect(rounds / 5 < held < rounds, f"{held} of {rounds} programs were held")
+
+    run_random_programs(
+        m, random_five_axis_program,
+        lambda random: f"G0 X{random.uniform(85, 175):.3f} A{random.uniform(-45, 45):.3f}", leave, 6)
 
 
 # --- from outside -----------------------------------------------------------------------------
