@@ -437,6 +437,23 @@ TEST(LinuxcncKinematics, HavePinsInTheUnitOfTheMachine) {
     EXPECT_DOUBLE_EQ(pivot("inch"), 50.8);
 }
 
+/// The guard compares the tables of the control with the set-up, so it must not read them itself.
+TEST(LinuxcncKinematics, AreReadWithoutTheTablesOfTheControl) {
+    const test_support::ScopedFolder folder;
+    folder.write("tool.tbl", "T1 P1 Z50\n");
+    ProgramSettings settings;
+    settings.ini = folder.write("mill.ini", "[EMCIO]\nTOOL_TABLE = tool.tbl\n[KINS]\nKINEMATICS = "
+                                            "xyzac-trt-kins\n[HAL]\nHALCMD = setp "
+                                            "xyzac-trt-kins.y-offset 2\n");
+    for (const bool ignores : {false, true}) {
+        settings.ignores_tables = ignores;
+        gcode::Environment environment;
+        ASSERT_TRUE(apply(settings, environment).has_value());
+        EXPECT_EQ(environment.length_offsets.empty(), ignores);
+        EXPECT_TRUE(environment.kinematics.has_value());
+    }
+}
+
 /// The tip of a nutating head, against rotations written down by hand.
 TEST(LinuxcncKinematics, OfANutatingHeadTurnAboutAnInclinedAxis) {
     HalSettings hal;

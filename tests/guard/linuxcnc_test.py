@@ -79,21 +79,23 @@ KINEMATICS = trivkins
 JOINTS = 3
 """
 AXIS = """[AXIS_{letter}]
-MIN_LIMIT = -500
-MAX_LIMIT = 500
-MAX_VELOCITY = 200
-MAX_ACCELERATION = 1000
+MIN_LIMIT = -{limit}
+MAX_LIMIT = {limit}
+MAX_VELOCITY = {speed}
+MAX_ACCELERATION = {acceleration}
 [JOINT_{joint}]
-TYPE = LINEAR
+TYPE = {type}
 HOME = 0
 HOME_SEQUENCE = 0
-MAX_VELOCITY = 200
-MAX_ACCELERATION = 1000
-MIN_LIMIT = -500
-MAX_LIMIT = 500
+MAX_VELOCITY = {speed}
+MAX_ACCELERATION = {acceleration}
+MIN_LIMIT = -{limit}
+MAX_LIMIT = {limit}
 FERROR = 5
 MIN_FERROR = 1
 """
+LINEAR = {"type": "LINEAR", "limit": 500, "speed": 200, "acceleration": 1000}
+ANGULAR = {"type": "ANGULAR", "limit": 36000, "speed": 500, "acceleration": 5000}
 HAL = """loadrt sampler depth=120000 cfg=fff
 net Xpos => sampler.0.pin.0
 net Ypos => sampler.0.pin.1
@@ -105,22 +107,6 @@ FIVE_AXES_INI = {
     "COORDINATES = X Y Z": "COORDINATES = XYZAC",
     "KINEMATICS = trivkins\nJOINTS = 3": "KINEMATICS = xyzac-trt-kins sparm=identityfirst\nJOINTS = 5",
 }
-ROTARY_AXIS = """[AXIS_{letter}]
-MIN_LIMIT = -36000
-MAX_LIMIT = 36000
-MAX_VELOCITY = 500
-MAX_ACCELERATION = 5000
-[JOINT_{joint}]
-TYPE = ANGULAR
-HOME = 0
-HOME_SEQUENCE = 0
-MAX_VELOCITY = 500
-MAX_ACCELERATION = 5000
-MIN_LIMIT = -36000
-MAX_LIMIT = 36000
-FERROR = 5
-MIN_FERROR = 1
-"""
 FIVE_AXES_HAL = """loadrt sampler depth=120000 cfg=fffff
 net Xpos => sampler.0.pin.0
 net Ypos => sampler.0.pin.1
@@ -1017,13 +1003,13 @@ def make_files(folder, name, planner):
     shutil.copy(__file__, folder + "/driver.py")
     write(display, f"#!/bin/sh\nexec python3 driver.py --drive {folder} {name}\n")
     os.chmod(display, 0o755)
-    axes = "".join(AXIS.format(letter=letter, joint=joint) for joint, letter in enumerate("XYZ"))
+    axes = "".join(AXIS.format(letter=letter, joint=joint, **LINEAR) for joint, letter in enumerate("XYZ"))
     ini, hal = INI.format(display=display, planner=planner), HAL
     if name.startswith("five_axes"):
         for old, new in FIVE_AXES_INI.items():
             ini = ini.replace(old, new)
         hal = FIVE_AXES_HAL
-        axes += "".join(ROTARY_AXIS.format(letter=letter, joint=joint) for joint, letter in ((3, "A"), (4, "C")))
+        axes += "".join(AXIS.format(letter=letter, joint=joint, **ANGULAR) for joint, letter in ((3, "A"), (4, "C")))
     write(folder + "/sim.ini", ini + axes)
     write(folder + "/test.hal", hal + (HAL_GUARDED if planner == "feeler_tp" else ""))
     write(folder + "/tool.tbl", "T1 P1 Z100 D10\n")
