@@ -1,6 +1,7 @@
 #include "hwsim/coprocessor.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace hwsim {
 namespace {
@@ -61,11 +62,28 @@ namespace {
 /// The sequence number reported for a fault of the whole device: the first not permitted.
 uint32_t next_to_permit(const CoprocessorState& s) { return s.permits.permit_sequence + 1; }
 
-void check_watchdog(CoprocessorState& s, const DeviceConfig& config) {
+/// What units see of each other: their outputs before the edge.
+struct Wires {
+    uint64_t cycle = 0; // that of the edge
+    uint32_t run = 0;
+    bool flush = false;
+    SearchStart start;
+    ThreadRelease release;
+    size_t granted = 0; // element
+    ReadRequest request;
+    ReadResponse response;
+    bool has_written = false;
+    uint32_t written = 0;
+    uint64_t writes_done = 0;
+    bool is_memory_stalled = false;
+    std::optional<Answer> answer; // to the first entry
+};
+
+void check_watchdog(CoprocessorState& s, const Wires& wires) {
     if (s.permits.stopped != Stop::none || !s.host.enabled) return;
     if (s.host.watchdog != 0 && s.cycle - s.host.heartbeat > s.host.watchdog)
         halt(s, Stop::host_silent, next_to_permit(s));
-    else if (is_stalled(s.memory, config, s.cycle))
+    else if (wires.is_memory_stalled)
         halt(s, Stop::memory_stalled, next_to_permit(s));
 }
 
@@ -74,9 +92,9 @@ std::optional<Answer> first_answer(const CoprocessorState& s) {
     if (s.permits.in_order.empty()) return {};
     const Dispatched& first = s.permits.in_order.front();
     if (!first.searched) return Answer{.stop = first.fault};
-    const SearchThread& thread = s.elements[first.element].threads[first.thread];
-    if (thread.phase != Phase::done) return {};
-    return thread.answer;
+    const SearchElement& element = s.elements[first.element];
+    if ((element.done >> first.thread & 1U) == 0) return {};
+    return element.threads[first.thread].answer;
 }
 
 void add(SearchTotals& sum, const SearchCounts& counts) {
@@ -88,34 +106,29 @@ void add(SearchTotals& sum, const SearchCounts& counts) {
     sum.pair_tests += counts.pair_tests;
 }
 
-void retire_first(CoprocessorState& s) {
+void retire_first(CoprocessorState& s, const Wires& wires) {
     s.retired.valid = false;
-    if (!s.host.enabled) return;
-    const std::optional<Answer> answer = first_answer(s);
-    if (!answer) return;
+    if (!s.host.enabled || !wires.answer || s.permits.in_order.empty()) return;
     const Dispatched& first = s.permits.in_order.front();
-    if (first.searched) {
-        release(s.elements[first.element], first.thread);
-        --s.searching;
-    }
-    retire_with(s, *answer);
+    if (first.searched) s.release = {true, first.element, first.thread};
+    retire_with(s, *wires.answer);
 }
 
 /// Gives a segment to an idle thread; false if there is none.
-bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry) {
+bool begin_search(CoprocessorState& s, const DeviceConfig& config, const Segment& segment,
+                  Dispatched& entry) {
     const size_t count = s.elements.size();
-    if (s.searching == count * s.elements[0].threads.size()) return false;
     for (size_t i = 0; i < count; ++i) {
         size_t number = s.next_element + i;
         if (number >= count) number -= count;
-        SearchElement& element = s.elements[number];
-        const auto thread = idle_thread(element);
-        if (!thread) continue;
+        const auto thread = static_cast<uint32_t>(std::countr_one(s.occupied[number]));
+        if (thread >= config.threads) continue;
         ++s.searching;
-        begin(element, *thread, query_of(s, segment), s.cycle);
+        s.occupied[number] |= 1U << thread;
         entry.searched = true;
         entry.element = static_cast<uint8_t>(number);
-        entry.thread = *thread;
+        entry.thread = static_cast<uint8_t>(thread);
+        s.start = {true, entry.element, entry.thread, query_of(s, segment)};
         s.next_element = static_cast<uint8_t>(number + 1 == count ? 0 : number + 1);
         return true;
     }
@@ -124,18 +137,18 @@ bool begin_search(CoprocessorState& s, const Segment& segment, Dispatched& entry
 
 /// Takes the first entry of the FIFO: a model goes into its slot once all lines before it are
 /// written, a segment to a thread.
-void dispatch(CoprocessorState& s) {
+void dispatch(CoprocessorState& s, const DeviceConfig& config, const Wires& wires) {
     if (s.permits.stopped != Stop::none || !s.host.enabled) return;
     if (s.fifo.entries.empty() || s.permits.in_order.full()) return;
     const SegmentFifo::Entry& first = s.fifo.entries.front();
     const Segment& segment = first.segment;
     Dispatched entry{.segment = segment, .pushed = first.pushed};
     if (segment.kind == SegmentKind::model) {
-        if (s.memory.writes_done < first.lines) return;
+        if (wires.writes_done < first.lines) return;
         store_model(s, segment);
     } else {
         entry.fault = fault_of_models(s, segment);
-        if (entry.fault == Stop::none && !begin_search(s, segment, entry)) return;
+        if (entry.fault == Stop::none && !begin_search(s, config, segment, entry)) return;
     }
     s.permits.in_order.push(entry);
     s.fifo.entries.pop();
@@ -155,6 +168,62 @@ size_t granted_element(const CoprocessorState& s) {
     return none;
 }
 
+Wires outputs_of(const CoprocessorState& s, const DeviceConfig& config) {
+    Wires wires;
+    wires.cycle = s.cycle + 1;
+    wires.run = s.run;
+    wires.flush = s.flush;
+    if (s.start.valid) wires.start = s.start;
+    wires.release = s.release;
+    wires.granted = granted_element(s);
+    if (wires.granted != none) wires.request = s.elements[wires.granted].request;
+    if (s.memory.check.output().valid) wires.response = s.memory.check.output();
+    wires.has_written = s.memory.has_written;
+    wires.written = s.memory.written;
+    wires.writes_done = s.memory.writes_done;
+    wires.is_memory_stalled = is_stalled(s.memory, config, wires.cycle);
+    wires.answer = first_answer(s);
+    return wires;
+}
+
+void tick_element(CoprocessorState& s, const DeviceConfig& config, const Wires& wires,
+                  size_t number) {
+    const auto is_for_it = [&](const auto& output) {
+        return output.valid && output.element == number;
+    };
+    ElementInput in{.number = static_cast<uint8_t>(number),
+                    .cycle = wires.cycle,
+                    .run = wires.run,
+                    .flush = wires.flush,
+                    .granted = wires.granted == number,
+                    .forget = wires.has_written,
+                    .forgotten = wires.written};
+    if (wires.response.valid && wires.response.request.element == number)
+        in.response = &wires.response;
+    if (is_for_it(wires.start)) in.start = &wires.start;
+    if (is_for_it(wires.release)) in.release = &wires.release;
+    tick(s.elements[number], config, in);
+}
+
+void tick_memory(CoprocessorState& s, const DeviceConfig& config, const Wires& wires) {
+    if (wires.granted != none)
+        s.next_request = static_cast<uint8_t>((wires.granted + 1) % s.elements.size());
+    tick(s.memory, config, wires.cycle, wires.request);
+}
+
+void tick_permits(CoprocessorState& s, const DeviceConfig& config, const Wires& wires) {
+    s.cycle = wires.cycle;
+    s.flush = s.start.valid = s.release.valid = false;
+    // A thread is free once its element has seen the release.
+    if (wires.release.valid) {
+        s.occupied[wires.release.element] &= ~(1U << wires.release.thread);
+        --s.searching;
+    }
+    retire_first(s, wires);
+    dispatch(s, config, wires);
+    check_watchdog(s, wires);
+}
+
 } // namespace
 
 CoprocessorState power_up(const DeviceConfig& config) {
@@ -163,38 +232,37 @@ CoprocessorState power_up(const DeviceConfig& config) {
     const size_t entries = size_t{config.elements} * config.threads + config.fifo_depth;
     s.permits.in_order = Ring<Dispatched>(entries);
     s.elements.assign(config.elements, search_element(config));
+    s.occupied.assign(config.elements, 0);
     s.memory = memory_unit(config);
     return s;
 }
 
 void tick(CoprocessorState& s, const DeviceConfig& config) {
-    ++s.cycle;
-    // The outputs of the units before the edge.
-    const size_t granted = granted_element(s);
-    const ReadRequest request = granted == none ? ReadRequest{} : s.elements[granted].request;
-    const ReadResponse& response = s.memory.response;
-    ElementInput in{.cycle = s.cycle,
-                    .run = s.run,
-                    .forget = s.memory.has_written,
-                    .forgotten = s.memory.written};
-    for (size_t i = 0; i < s.elements.size(); ++i) {
-        in.number = static_cast<uint8_t>(i);
-        in.granted = i == granted;
-        in.response = response.request.valid && response.request.element == i ? &response : nullptr;
-        tick(s.elements[i], config, in);
+    const Wires wires = outputs_of(s, config);
+    for (size_t i = 0; i < s.elements.size(); ++i) tick_element(s, config, wires, i);
+    tick_memory(s, config, wires);
+    tick_permits(s, config, wires);
+}
+
+void tick_in_order(CoprocessorState& s, const DeviceConfig& config, std::span<const size_t> order) {
+    const Wires wires = outputs_of(s, config);
+    for (const size_t unit : order) {
+        if (unit < s.elements.size())
+            tick_element(s, config, wires, unit);
+        else if (unit == s.elements.size())
+            tick_memory(s, config, wires);
+        else
+            tick_permits(s, config, wires);
     }
-    if (granted != none) s.next_request = static_cast<uint8_t>((granted + 1) % s.elements.size());
-    tick(s.memory, config, s.cycle, request);
-    retire_first(s);
-    dispatch(s);
-    check_watchdog(s, config);
 }
 
 void halt(CoprocessorState& s, Stop reason, uint32_t sequence, uint32_t line) {
     stop(s.permits, reason, sequence, line);
     ++s.run;
     s.fifo.entries.clear();
-    for (SearchElement& element : s.elements) flush(element);
+    s.flush = true;
+    s.start.valid = s.release.valid = false;
+    s.occupied.assign(s.occupied.size(), 0);
     s.searching = 0;
     s.host.irq_pending |= irq_stop;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 
 #include "hwsim/memory_unit.h"
 #include "hwsim/registers.h"
@@ -118,9 +119,13 @@ struct CoprocessorState {
     std::array<ModelSlot, model_slots> slots{};
     std::vector<SearchElement> elements;
     MemoryUnit memory;
-    uint32_t searching = 0;   // threads with a search
-    uint8_t next_element = 0; // has priority for the next search
-    uint8_t next_request = 0; // has priority for the memory
+    std::vector<uint32_t> occupied; // bit sets of the threads of each element that have a search
+    uint32_t searching = 0;         // their number
+    uint8_t next_element = 0;       // has priority for the next search
+    uint8_t next_request = 0;       // has priority for the memory
+    SearchStart start;              // outputs of the permit unit
+    ThreadRelease release;
+    bool flush = false;
     SearchTotals searched;
     Retired retired;
 
@@ -132,6 +137,12 @@ CoprocessorState power_up(const DeviceConfig& config);
 
 /// One rising clock edge.
 void tick(CoprocessorState& state, const DeviceConfig& config);
+
+/// The same, for a given order of the units: an element for each number below the number of
+/// elements, then the memory, then the permit unit. The order does not matter: units see of each
+/// other only what was there before the edge.
+void tick_in_order(CoprocessorState& state, const DeviceConfig& config,
+                   std::span<const size_t> order);
 
 /// A read or write on the register bus between two edges; `address` in bytes, see Register.
 uint32_t read(CoprocessorState& state, const DeviceConfig& config, uint32_t address);

@@ -7,13 +7,15 @@
 namespace hwsim {
 namespace {
 
-void answer_read(MemoryUnit& unit, uint64_t cycle) {
-    unit.response.request.valid = false;
-    if (unit.under_way.empty() || unit.under_way.front().cycle > cycle) return;
-    unit.response.request = unit.under_way.front().request;
-    unit.response.line = unit.lines[unit.response.request.address];
+/// The line that arrives in this cycle, if any.
+ReadResponse arriving(MemoryUnit& unit, uint64_t cycle) {
+    if (unit.under_way.empty() || unit.under_way.front().cycle > cycle) return {};
+    const MemoryUnit::Pending& read = unit.under_way.front();
+    const ReadResponse line{true, is_intact(read.line, read.request.address), read.request,
+                            read.line};
     unit.under_way.pop();
     ++unit.reads_done;
+    return line;
 }
 
 /// Reads have priority; while the write queue is full, reads and writes alternate.
@@ -32,7 +34,8 @@ void use_port(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {
         unit.free_at = cycle + config.cycles_per_line;
     } else if (can_read) {
         unit.write_was_last = false;
-        unit.under_way.push({unit.asked.front().request, cycle + config.memory_latency});
+        const ReadRequest& request = unit.asked.front().request;
+        unit.under_way.push({request, cycle + config.memory_latency, unit.lines[request.address]});
         unit.asked.pop();
         unit.free_at = cycle + config.cycles_per_line;
     }
@@ -51,13 +54,13 @@ MemoryUnit memory_unit(const DeviceConfig& config) {
 
 void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in) {
     if (unit.stalled) {
-        unit.response.request.valid = false;
+        unit.check.tick({});
         unit.has_written = false;
     } else {
-        answer_read(unit, cycle);
+        unit.check.tick(arriving(unit, cycle));
         use_port(unit, config, cycle);
     }
-    if (in.valid) unit.asked.push({in, cycle});
+    if (in.valid) unit.asked.push({in, cycle, {}});
 }
 
 bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -62,8 +63,39 @@ struct ReadRequest {
     bool operator==(const ReadRequest&) const = default;
 };
 
+/// A unit that takes a question in each cycle, does not stall, and answers after `stages` cycles.
+///
+/// In the circuit the work is done on the way; here an answer is computed when it is asked for.
+template <typename Answer, uint32_t stages>
+class Pipeline {
+public:
+    static constexpr uint32_t latency = stages;
+
+    const Answer& output() const { return stage_[next_]; }
+
+    /// One rising clock edge; an answer that is not valid is none.
+    void tick(const Answer& in) {
+        // An empty stage keeps its old contents except `valid`.
+        if (in.valid)
+            stage_[next_] = in;
+        else
+            stage_[next_].valid = false;
+        next_ = next_ + 1 == stages ? 0 : next_ + 1;
+    }
+
+    bool operator==(const Pipeline&) const = default;
+
+private:
+    // Stages rotate instead of their contents: `next_` is where a question enters and the oldest
+    // answer leaves.
+    std::array<Answer, stages> stage_{};
+    uint32_t next_ = 0;
+};
+
 /// A line for the element that requested it.
 struct ReadResponse {
+    bool valid = false;
+    bool is_intact = false; // by its check word
     ReadRequest request;
     Line line;
 
@@ -104,13 +136,18 @@ struct ZeroedAllocator {
 
 using DeviceMemory = std::vector<Line, ZeroedAllocator<Line>>;
 
-/// The memory and its port. Reads are in order, each after the latency, limited by the bandwidth.
+/// Compares lines with their check words, four words a stage.
+using CheckUnit = Pipeline<ReadResponse, 4>;
+
+/// The memory and its port. Reads are in order, each after the latency, limited by the bandwidth; a
+/// line is read when its turn comes at the port, and checked when it arrives.
 /// Lines written by DMA are interleaved: when no read waits, or alternating with reads while the
 /// write queue is full.
 struct MemoryUnit {
     struct Pending {
         ReadRequest request;
         uint64_t cycle = 0; // of the request, then of the arrival of the line
+        Line line;
         bool operator==(const Pending&) const = default;
     };
     struct Write {
@@ -128,7 +165,7 @@ struct MemoryUnit {
     uint64_t watchdog_since = 0; // cycle; earlier waiting does not count
     bool stalled = false;        // no responses: injected fault
 
-    ReadResponse response;    // output
+    CheckUnit check;          // its output is that of the unit
     bool has_written = false; // output: caches invalidate the line
     uint32_t written = 0;     // its address
     uint64_t reads_done = 0, writes_done = 0;

@@ -35,79 +35,59 @@ inline void fill(LineCache& cache, uint32_t address, const Line& line) {
     entry_of(cache, address) = {true, address, line};
 }
 
-/// The line in memory has changed.
-inline void invalidate(LineCache& cache, uint32_t address) {
-    LineCache::Entry& entry = entry_of(cache, address);
-    if (entry.address == address) entry.valid = false;
-}
+/// What the path unit answers: how a pair is divided, and the offsets of two samples.
+struct PathAnswer {
+    bool valid = false;
+    uint8_t thread = 0;
+    Division division = Division::none;
+    std::array<FixedVec, 2> offset{};
 
-/// Tests both halves of a division: swept volume against box, twice, as a pipeline.
-///
-/// Latency:    15 cycles: the offsets, then as in the pair unit, with the same arithmetic.
-/// Throughput: one division a cycle, no stall.
-struct BoxUnit {
-    static constexpr uint32_t latency = 15;
-
-    struct Output {
-        bool valid = false;
-        uint8_t thread = 0;
-        std::array<bool, 2> in_range{};
-        std::array<uint64_t, 2> squared{};
-        bool operator==(const Output&) const = default;
-    };
-    /// The halves stay with their thread; only results travel. Stages rotate instead of their
-    /// contents: `next` is where an input enters and the oldest result leaves.
-    std::array<Output, latency> stage{};
-    uint32_t next = 0;
-
-    const Output& output() const { return stage[next]; }
-    bool operator==(const BoxUnit&) const = default;
+    bool operator==(const PathAnswer&) const = default;
 };
 
-/// The input of the first stage: both halves, either of which may be missing.
-BoxUnit::Output box_question(uint8_t thread, const SplitPairs& halves, const Segment& segment);
-
-/// One rising clock edge.
-void tick(BoxUnit& unit, const BoxUnit::Output& in);
-
-/// The squared distance of two records, as a pipeline.
+/// Chooses the part of a pair to divide, and computes the offsets of two samples of the path, with
+/// six multipliers of 13 x 25 bits.
 ///
-/// Latency:    14 cycles: gaps, squares, 9 of the root (3 bits each), less the radius, squares,
-/// sum. Throughput: one pair a cycle, no stall.
-struct PairUnit {
-    static constexpr size_t latency = 14;
+/// Stages: ways and lengths, products, sums, offsets, their difference, comparison.
+using PathUnit = Pipeline<PathAnswer, 6>;
 
-    struct Output {
-        bool valid = false;
-        uint8_t thread = 0;
-        uint32_t tool_record = 0, work_record = 0;
-        uint64_t squared = 0;
-        bool operator==(const Output&) const = default;
-    };
-    /// Stages rotate instead of their contents: `next` is where the next pair enters and the oldest
-    /// leaves.
-    std::array<Output, latency> stage{};
-    uint32_t next = 0;
+/// What the gap unit answers: the squared distance of a half of a division, or of two records.
+struct GapAnswer {
+    bool valid = false;
+    uint8_t thread = 0;
+    bool of_records = false;
+    uint8_t half = 0;                          // of the division
+    bool in_range = true;                      // otherwise the half leaves the range
+    uint32_t tool_record = 0, work_record = 0; // names
+    uint64_t squared = 0;
 
-    const Output& output() const { return stage[next]; }
-    bool operator==(const PairUnit&) const = default;
+    bool operator==(const GapAnswer&) const = default;
 };
 
-/// One rising clock edge.
-void tick(PairUnit& unit, const PairUnit::Output& in);
+/// The squared distance of a swept volume and a box, or of two records, with three multipliers of
+/// 24 x 24 bits and one of 25 x 25.
+///
+/// Stages: 4 for the gaps, 3 for their squares and the sum, 13 of the root with two bits each, less
+/// the radius, at least 0, 2 for the square, sum.
+using GapUnit = Pipeline<GapAnswer, 25>;
 
 /// What a thread does next, or waits for.
 enum class Phase : uint8_t {
     idle,
-    divide,    // select the part of the pair to divide
-    open,      // read the node: needs the node cache
-    test,      // needs the box unit
-    tested,    // waits for the box unit
-    pop,       // take the next pair from the stack
-    take_tool, // read a line of the tool's leaf: needs the record cache
-    take_work, // read a line of the work's leaf
-    compare,   // needs the pair unit
-    drain,     // waits for the last pairs
+    divide,    // the part of the pair to divide: needs the path unit
+    dividing,  // waits for the path unit
+    open,      // reads a node: needs the port of the caches
+    middle,    // the offsets at the middle of the path: needs the path unit
+    halving,   // waits for the path unit
+    test,      // needs the gap unit, once for each half
+    tested,    // waits for the gap unit
+    pop,       // the next pair of the stack: needs its port
+    popped,    // the pair has been read
+    take_tool, // reads a line of the tool's leaf: needs the port of the caches
+    take_work, // reads a line of the work's leaf
+    compare,   // needs the gap unit for each pair of records
+    drain,     // waits for the last of them
+    look,      // waits for the cache
     ask,       // needs the element's port to the memory
     wait,      // for the memory
     done,      // waits until everything before it is retired
@@ -120,15 +100,19 @@ struct SearchThread {
     uint8_t stack_size = 0;
     uint8_t tool_line = 0, work_line = 0; // of the leaves, from 0
     uint8_t tool_record_index = 0, work_record_index = 0;
-    uint8_t in_pair_unit = 0;
+    uint8_t in_gap_unit = 0; // pairs of records
+    uint8_t next_half = 0;   // to test
+    bool is_stale = false;   // the line was written after it was requested
     Division division = Division::none;
     uint64_t started = 0; // cycle
     Query query;
     Answer answer;
     SearchPair pair;
     SplitPairs halves;
+    std::array<bool, 2> in_range{};   // the halves
+    std::array<FixedVec, 2> offset{}; // at the first and the last sample of `pair`
+    std::array<FixedVec, 2> middle{}; // at the last of its first half, the first of its second
     Records tools{}, works{};
-    FixedVec offset{};
     std::array<SearchPair, 64> stack{};
 
     bool operator==(const SearchThread&) const = default;
@@ -136,29 +120,29 @@ struct SearchThread {
 
 void start(SearchThread& thread, const Query& query, uint64_t cycle);
 
-/// The line that the thread reads in phases open, take_tool and take_work.
+/// The line that the thread reads, and whether it belongs to the work model, else to the tool
+/// model.
 uint32_t requested_line(const SearchThread& thread);
-
-/// Whether that line belongs to the work model, else to the tool model.
 bool needs_work(const SearchThread& thread);
 
-/// Decides the next step for the pair of the thread.
-void divide(SearchThread& thread, uint64_t cycle, uint32_t search_limit);
+/// The question to the path unit in phases divide and middle; none if the search takes too long.
+PathAnswer ask_path_unit(SearchThread& thread, uint8_t number, uint64_t cycle,
+                         uint32_t search_limit);
+
+/// Continues with the answer of the path unit.
+void accept_path(SearchThread& thread, const PathAnswer& answer);
 
 /// Continues with the line that was read.
 void accept_line(SearchThread& thread, const Line& line);
 
-/// Continues with the result of the box unit.
-void accept_tests(SearchThread& thread, const BoxUnit::Output& tests, uint32_t stack_depth);
+/// The question to the gap unit in phases test and compare.
+GapAnswer ask_gap_unit(SearchThread& thread, uint8_t number);
 
-/// Takes the next pair from the stack; the search is done if it is empty.
-void pop(SearchThread& thread);
+/// Takes an answer of the gap unit.
+void accept_gap(SearchThread& thread, const GapAnswer& answer, uint32_t stack_depth);
 
-/// The next pair of records for the pair unit; advances to the one after it.
-PairUnit::Output next_records(SearchThread& thread, uint8_t number);
-
-/// Takes the result of the pair unit.
-void accept_distance(SearchThread& thread, const PairUnit::Output& distance);
+/// Continues with the pair that was taken from the stack.
+void accept_popped(SearchThread& thread);
 
 /// Ends the search without an answer.
 void stop(SearchThread& thread, Stop reason, uint32_t line);
@@ -172,9 +156,27 @@ struct ElementCounts {
     bool operator==(const ElementCounts&) const = default;
 };
 
-/// A processing element: several searches that share a box unit, a pair unit, two caches and one
-/// request to the memory. Each thread does one step per cycle if the unit that it needs is free;
-/// the priority rotates.
+/// A line that is read from a cache: the output of its memory.
+struct CacheRead {
+    bool valid = false;
+    bool hit = false;
+    uint8_t thread = 0;
+    Line line;
+
+    bool operator==(const CacheRead&) const = default;
+};
+
+/// A line of the memory was written: what its place in each cache held.
+struct Snoop {
+    bool in_nodes = false, in_records = false;
+    uint32_t address = 0;
+
+    bool operator==(const Snoop&) const = default;
+};
+
+/// A processing element: several searches that share a path unit, a gap unit, the memories of
+/// caches and stacks with one read port each, and one request to the main memory. Each thread does
+/// one step per cycle if the unit that it needs is free; the priority rotates.
 struct SearchElement {
     std::vector<SearchThread> threads;
     uint32_t acting = 0;  // bit set of the threads that can act
@@ -182,9 +184,11 @@ struct SearchElement {
     uint32_t waiting = 0; // for the memory
     uint32_t done = 0;    // with an answer to retire
     uint8_t first = 0;    // has priority
-    BoxUnit box;
-    PairUnit pair;
+    PathUnit path;
+    GapUnit gap;
     LineCache nodes, records;
+    CacheRead looked;
+    Snoop snoop;
     ReadRequest request; // output: held until granted
     ElementCounts counts;
 
@@ -193,28 +197,39 @@ struct SearchElement {
 
 SearchElement search_element(const DeviceConfig& config);
 
-/// The inputs of an element in a cycle.
+/// A search for a thread of an element: an output of the permit unit.
+struct SearchStart {
+    bool valid = false;
+    uint8_t element = 0, thread = 0;
+    Query query;
+
+    bool operator==(const SearchStart&) const = default;
+};
+
+/// A thread whose answer was taken: an output of the permit unit.
+struct ThreadRelease {
+    bool valid = false;
+    uint8_t element = 0, thread = 0;
+
+    bool operator==(const ThreadRelease&) const = default;
+};
+
+/// The inputs of an element: outputs of other units before the edge. Pointers are null unless their
+/// object is for this element.
 struct ElementInput {
     uint8_t number = 0; // its own
     uint64_t cycle = 0;
-    uint32_t run = 0;                       // of the device: counts stops
-    bool granted = false;                   // its request was accepted
-    const ReadResponse* response = nullptr; // null unless for this element
-    bool forget = false;                    // a line of memory was written: invalidate it
-    uint32_t forgotten = 0;                 // its address
+    uint32_t run = 0;     // of the device: counts stops
+    bool flush = false;   // drop everything
+    bool granted = false; // its request was accepted
+    const ReadResponse* response = nullptr;
+    const SearchStart* start = nullptr;
+    const ThreadRelease* release = nullptr;
+    bool forget = false;    // a line of memory was written
+    uint32_t forgotten = 0; // its address
 };
 
 /// One rising clock edge.
 void tick(SearchElement& element, const DeviceConfig& config, const ElementInput& in);
-
-/// A thread without a search, if any.
-std::optional<uint8_t> idle_thread(const SearchElement& element);
-
-/// Starts a search on a thread; release() frees one that is done.
-void begin(SearchElement& element, uint8_t thread, const Query& query, uint64_t cycle);
-void release(SearchElement& element, uint8_t thread);
-
-/// Drops all searches and pending requests.
-void flush(SearchElement& element);
 
 } // namespace hwsim

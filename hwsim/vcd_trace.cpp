@@ -44,7 +44,7 @@ constexpr DeviceSignal device_signals[] = {
     {"memory_writes", 16,
      [](const CoprocessorState& s) { return uint64_t{s.memory.writes.size()}; }},
     {"memory_response", 1,
-     [](const CoprocessorState& s) { return uint64_t{s.memory.response.request.valid}; }},
+     [](const CoprocessorState& s) { return uint64_t{s.memory.check.output().valid}; }},
     {"irq", 1, [](const CoprocessorState& s) { return uint64_t{interrupt(s)}; }},
     {"retires", 1, [](const CoprocessorState& s) { return uint64_t{s.retired.valid}; }},
     {"retired_seq", 32,

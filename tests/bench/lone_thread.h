@@ -5,15 +5,16 @@
 
 namespace bench {
 
-/// Stages of the two pipelines.
+/// Stages of the gap unit for volumes and for pairs of records.
 struct UnitStages {
-    uint32_t volume = hwsim::BoxUnit::latency;
-    uint32_t pair = hwsim::PairUnit::latency;
+    uint32_t volume = hwsim::GapUnit::latency;
+    uint32_t pair = hwsim::GapUnit::latency;
 };
 
-/// The cycles of a device with one element of one thread that never waits for others. A step of a
-/// thread takes one cycle, a unit as many more as it has stages. A line that is not in the cache
-/// takes the latency of the memory plus four cycles: request, grant, entering the memory, return.
+/// The cycles of a device with one element of one thread that never waits for others. A question
+/// takes one cycle, its answer as many as the unit has stages; memories of the element take a cycle
+/// more. A line that is not in the cache takes the latency of the memory, the stages that check it,
+/// and three cycles more: request, grant, entering the memory.
 ///
 /// With the device's own units this is exactly what the emulator counts.
 struct LoneThread {
@@ -29,16 +30,16 @@ struct LoneThread {
         records.entries.resize(config.record_cache_lines);
     }
 
-    void step() { ++cycles; }
-    void test() { cycles += 1 + stages.volume; }
+    void ask_path_unit() { cycles += 1 + hwsim::PathUnit::latency; }
+    void test(uint32_t halves) { cycles += halves == 0 ? 0 : halves + stages.volume; }
     void compare(uint32_t pairs) { cycles += pairs; }
     void drain() { cycles += stages.pair; }
+    void pop(bool is_empty) { cycles += is_empty ? 1 : 2; }
     void read(hwsim::LineCache& cache, uint32_t address) {
-        constexpr uint32_t way_to_memory = 4;
-        ++cycles;
+        cycles += 2;
         if (hwsim::cached_line(cache, address)) return;
         hwsim::fill(cache, address, {});
-        cycles += way_to_memory + memory_latency;
+        cycles += 3 + memory_latency + hwsim::CheckUnit::latency;
         ++lines;
     }
 };

@@ -35,7 +35,7 @@ private:
     using SplitPairs = typename Rules::SplitPairs;
 
     std::optional<Pair> visit(const Pair& pair) {
-        time_.step();
+        time_.ask_path_unit();
         const hwsim::Division division = rules_.division_of(pair);
         if (division == hwsim::Division::none) {
             compare(pair);
@@ -43,6 +43,7 @@ private:
         }
         if (division == hwsim::Division::way) {
             ++answer_.counts.splits;
+            time_.ask_path_unit();
             return nearer_of(rules_.split_at_middle(pair));
         }
         ++answer_.counts.nodes;
@@ -53,7 +54,7 @@ private:
     }
 
     std::optional<Pair> nearer_of(SplitPairs halves) {
-        time_.test();
+        time_.test(uint32_t{halves[0].has_value()} + halves[1].has_value());
         for (std::optional<Pair>& half : halves) {
             if (!half) continue;
             ++answer_.counts.box_tests;
@@ -118,12 +119,12 @@ private:
 
     std::optional<Pair> popped() {
         while (!stack_.empty()) {
-            time_.step();
+            time_.pop(false);
             const Pair pair = stack_.back();
             stack_.pop_back();
             if (rules_.is_below(pair, answer_.squared)) return pair;
         }
-        time_.step();
+        time_.pop(true);
         return {};
     }
 

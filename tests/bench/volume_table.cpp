@@ -115,7 +115,7 @@ struct Contestant {
 /// needs a root.
 LoneThread thread_of(Bodies bodies, uint32_t volume_stages) {
     UnitStages stages{.volume = volume_stages};
-    if (bodies == Bodies::points) stages.pair = 3;
+    if (bodies == Bodies::points) stages.pair = 7;
     return LoneThread({}, stages);
 }
 
@@ -124,10 +124,10 @@ using Comparison = std::array<Work, volumes.size()>;
 
 /// Runs all three searches over all queries; empty if they disagree.
 std::optional<Comparison> compared(const Questions& scene, Bodies bodies, bool measures) {
-    const uint32_t box_stages = bodies == Bodies::points ? 4 : hwsim::BoxUnit::latency;
+    const uint32_t box_stages = bodies == Bodies::points ? 7 : hwsim::GapUnit::latency;
     Contestant<BoxRules> boxes{thread_of(bodies, box_stages)};
-    Contestant<SphereRules> spheres{thread_of(bodies, 14)};
-    Contestant<RootlessSphereRules> rootless{thread_of(bodies, 5)};
+    Contestant<SphereRules> spheres{thread_of(bodies, 20)};
+    Contestant<RootlessSphereRules> rootless{thread_of(bodies, 6)};
     for (Query query : scene.queries) {
         if (measures) query.limit = hwsim::beyond_all_squares;
         const uint64_t squared = boxes.ask(scene, query, BoxRules(query));

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "tests/hwsim/functional_answers.h"
@@ -316,6 +319,76 @@ TEST(Coprocessor, TakesTheSameCyclesEveryTime) {
     }
     EXPECT_EQ(b.device.retired.size(), 42U);
     EXPECT_EQ(a.device.state, b.device.state);
+}
+
+/// Also while lines are written, and through stops.
+TEST(Coprocessor, DoesNotDependOnTheOrderInWhichUnitsAreEvaluated) {
+    std::mt19937 rng(14);
+    Work work(13);
+    TestDevice& device = work.device;
+    std::vector<size_t> order(device.config.elements + 2);
+    std::iota(order.begin(), order.end(), size_t{0});
+    CoprocessorState shuffled = device.state;
+    int stops = 0;
+    for (int cycle = 0; cycle < 30'000; ++cycle) {
+        if (rng() % 700 == 0) {
+            device.push(question(99, {}, 0));
+            ++stops;
+        } else if (device.has_status(status_stopped) && rng() % 3 == 0) {
+            device.write(Register::control, control_clear | control_enable);
+            device.set_models(cloud(rng, 60, 3'000), cloud(rng, 90, 3'000));
+            device.space.next = 0;
+        } else if (!device.has_status(status_fifo_full)) {
+            device.push(question(device.read(Register::next_seq), random_way(rng, 6'000), 0,
+                                 SegmentKind::measure));
+        }
+        if (rng() % 4 == 0) store(device.state, rng() % 500, {});
+        shuffled = device.state;
+        for (int i = 0; i < 4; ++i) {
+            std::shuffle(order.begin(), order.end(), rng);
+            tick_in_order(shuffled, device.config, order);
+            device.clock();
+        }
+        ASSERT_TRUE(shuffled == device.state) << cycle;
+    }
+    EXPECT_GT(stops, 20);
+}
+
+/// A line that is written while it is read, and while others come in, must not stay in a cache: a
+/// later model may use it.
+TEST(Coprocessor, ForgetsLinesThatAreWrittenWhileTheyAreRead) {
+    int answered = 0, stopped = 0;
+    for (uint32_t delay = 0; delay < 900; ++delay) {
+        DeviceConfig config = small_config();
+        config.elements = 1;
+        config.node_cache_lines = config.record_cache_lines = 64;
+        config.memory_latency = 20;
+        config.cycles_per_line = 1;
+        TestDevice device(config);
+        std::mt19937 rng(delay);
+        device.set_model(0, device.load(Side::tool, cloud(rng, 4, 500), 2));
+        const LineSpace before = device.space;
+        const uint32_t header = device.load(Side::work, cloud(rng, 6, 3'000), 2);
+        device.set_model(1, header);
+        device.clock(300);
+        for (int i = 0; i < 2; ++i) device.push(question(1, {}, 0, SegmentKind::measure));
+        device.clock(delay);
+        device.space = before;
+        ASSERT_EQ(device.load(Side::work, cloud(rng, 6, 3'000), 2, 2), header);
+        ASSERT_TRUE(device.finish());
+        ++(device.reason() == Stop::none ? answered : stopped);
+        device.write(Register::control, control_clear | control_enable);
+        if (!device.state.slots[0].valid) device.set_model(0, before.next - 1);
+        device.set_model(1, header, 2);
+        Segment later = question(1, {}, 0, SegmentKind::measure);
+        later.work_epoch = 2;
+        device.push_in_time(later);
+        ASSERT_TRUE(device.finish());
+        ASSERT_EQ(device.reason(), Stop::none);
+        ASSERT_EQ(device.retired.back().answer, expected(device, later)) << delay;
+    }
+    EXPECT_GT(answered, 100);
+    EXPECT_GT(stopped, 100);
 }
 
 TEST(Coprocessor, ContinuesFromASnapshotAsBefore) {

@@ -314,6 +314,7 @@ TEST(Fault, ManyStopsLeaveEveryThreadFree) {
         device.clock(60);
         device.push(along_the_row(99));
         ASSERT_EQ(device.reason(), Stop::sequence);
+        device.clock();
         for (const SearchElement& element : device.state.elements) ASSERT_EQ(element.busy, 0U);
         device.write(Register::control, control_clear | control_enable);
     }
