@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Plants faults in a copy of the circuit, one at a time, and expects the lockstep tests to fail with each.
+
+Usage: mutants.py SOURCE_DIRECTORY [FAULT...]      (numbers, from 1)
+"""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+# (file, text, replacement)
+FAULTS = [
+    ("path_unit.sv", "(13'd1 << log2_steps_2) >> 1", "13'd0 & {9'd0, log2_steps_2}"),
+    ("path_unit.sv", "tool_longest[5] >= work_longest[5]", "tool_longest[5] > work_longest[5]"),
+    ("path_unit.sv", "tool_y[1] + diameter", "tool_y[1]"),
+    ("path_unit.sv", "way > 0 ? device::WAY", "way > 1 ? device::WAY"),
+    ("gap_unit.sv", "value <= 27'(device::GREATEST)", "value < 27'(device::GREATEST)"),
+    ("gap_unit.sv", "fits(moved_high + widened(aside))", "fits(moved_high)"),
+    ("gap_unit.sv", "{26'd0, has_rest}", "{26'd0, has_rest & root[0]}"),
+    ("gap_unit.sv", "less_radius < 0 ? '0", "less_radius < -27'sd1 ? '0"),
+    ("gap_unit.sv", "{has_radius[STAGES-2:ROOT+1], radius[ROOT] != 0}", "{has_radius[STAGES-2:ROOT+1], 1'b1}"),
+    ("gap_unit.sv", "valid <= flush ? '0 : ", "valid <= "),
+    ("check_unit.sv", "{in_line[95:0], in_address}", "{in_line[95:0], in_address & 32'h7FFF_FFFF}"),
+    ("check_unit.sv", "lines[3][511:480] ==", "lines[3][511:481] =="),
+    ("line_cache.sv", "if (is_snooped && snooped_tag == forgotten_tag)", "if (is_snooped && snooped_tag > forgotten_tag)"),
+    ("line_cache.sv", "if (forget && any_fill)", "if (forget && any_fill && fill)"),
+    ("line_cache.sv", "is_valid && read_tag == looked_tag", "is_valid"),
+    ("search_thread.sv", "is_stale <= 1'b1", "is_stale <= 1'b0"),
+    ("search_thread.sv", "records_answer && {1'b0, gap_answer.squared} <", "records_answer && {1'b0, gap_answer.squared} <="),
+    ("search_thread.sv", "squared_1 < squared_0", "squared_1 <= squared_0"),
+    ("search_thread.sv", "{1'b0, popped.squared} <", "{1'b0, popped.squared} <="),
+    ("search_thread.sv", "cycle - started > search_limit", "cycle - started >= search_limit"),
+    ("search_thread.sv", "of_work ? work_epoch : tool_epoch", "of_work ? tool_epoch : tool_epoch"),
+    ("search_thread.sv", "line_address < memory_lines", "line_address <= memory_lines"),
+    ("search_thread.sv", "half_1.first <= middle + 13'd1", "half_1.first <= middle"),
+    ("search_thread.sv", "in_gap_unit_next == 0) phase", "in_gap_unit == 0) phase"),
+    ("search_element.sv", "first == 4'(THREADS - 1) ? '0 : first + 4'd1", "first == 4'(THREADS - 1) ? '0 : first"),
+    ("search_element.sv", "!request || granted ?", "!request ?"),
+    ("search_element.sv", "response_is_intact && !is_stale[i]", "response_is_intact"),
+    ("search_element.sv", "looks && !flush && !reset", "looks && !reset"),
+    ("search_element.sv", "push_place |= stack_sizes[7*i+:6]", "push_place |= {1'b0, stack_sizes[7*i+:5]}"),
+]
+TESTS = ("hwsim_rtl_unit_test", "hwsim_rtl_element_test")
+
+
+def run(command, **options):
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", **options)
+
+
+def expect_success(result):
+    if result.returncode != 0:
+        sys.exit(result.stdout[-4000:])
+
+
+def plant(path, text, replacement):
+    source = path.read_text(encoding="utf-8")
+    if text not in source:
+        sys.exit(f"{path.name} does not contain: {text}")
+    path.write_text(source.replace(text, replacement, 1), encoding="utf-8")
+
+
+def is_noticed(build):
+    """Whether a test fails; what does not compile is no fault to notice."""
+    expect_success(run(["ninja", "-C", build, *TESTS]))
+    for test in TESTS:
+        result = run([f"{build}/tests/hwsim/rtl/{test}", "--gtest_brief=1", "--gtest_fail_fast"])
+        failed = re.findall(r"\[  FAILED  \] (\S+) ", result.stdout)
+        if result.returncode != 0:
+            return failed[0] if failed else f"{test} ends with {result.returncode}"
+    return None
+
+
+def main(source, *chosen):
+    numbers = [int(n) for n in chosen] or range(1, len(FAULTS) + 1)
+    unnoticed = []
+    with tempfile.TemporaryDirectory(prefix="feeler-mutants-") as folder:
+        original, circuit, build = pathlib.Path(source, "hwsim/rtl"), pathlib.Path(folder, "rtl"), folder + "/build"
+        shutil.copytree(original, circuit)
+        expect_success(run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                            "-DFEELER_UNITY=ON", "-DFEELER_TESTS=ON", f"-DFEELER_CIRCUIT={circuit}"]))
+        if is_noticed(build):
+            sys.exit("the tests fail without a fault")
+        for number in numbers:
+            name, text, replacement = FAULTS[number - 1]
+            plant(circuit / name, text, replacement)
+            test = is_noticed(build)
+            print(f"{number:2} {name}: {replacement}: {test or 'NOT NOTICED'}", flush=True)
+            if not test:
+                unnoticed.append(number)
+            shutil.copy(original / name, circuit / name)
+    if unnoticed:
+        sys.exit(f"not noticed: {unnoticed}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
