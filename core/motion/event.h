@@ -101,6 +101,7 @@ struct Motion {
     double feed = 0.0;       // mm/min along the path; 0 on rapids
     std::optional<RapidStyle> style = {}; // of a rapid; empty: that of the machine
     bool stops_at_contact = false; // a probing move: it ends between its first contact and `to`
+    bool leaves_contact = false;   // such a move ends when the contact is lost (G38.4)
     // Axes that reach `to` wherever the motion starts. After a probing move, the others end as far
     // from `to` as they started from `from`.
     AxisSet settles = 0;

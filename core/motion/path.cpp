@@ -5,6 +5,7 @@
 
 #include "core/base/math.h"
 #include "core/base/units.h"
+#include "core/geom/gjk.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "core/motion/timing.h"
@@ -382,6 +383,21 @@ void add_corners(std::vector<AxisValues>& corners, const AxisValues& position,
                 corners.push_back(*corner);
 }
 
+/// The corners of the box around positions, whose rotary axes are the same.
+std::vector<AxisValues> corners_around(const std::vector<AxisValues>& positions) {
+    const AxisValues first = positions.front();
+    AxisRange range{first, first};
+    for (const AxisValues& position : positions) extend(range, position);
+    AxisSpread box;
+    for (size_t i = 0; i < axis_count; ++i) {
+        box.below[i] = first[i] - range.min[i];
+        box.above[i] = range.max[i] - first[i];
+    }
+    std::vector<AxisValues> corners;
+    add_corners(corners, first, box);
+    return corners;
+}
+
 /// The smallest spread that contains two.
 AxisSpread joined(const AxisSpread& a, const AxisSpread& b) {
     AxisSpread both;
@@ -426,23 +442,23 @@ Path path_of(const Motion& motion, const AxisSpread& from, const AxisSpread& to,
             legs.push_back(std::move(hull));
         }
     } else {
-        Leg hull{.end = path.duration, .straight = false};
+        Leg hull{.end = path.duration,
+                 .path_error = motion.path_error,
+                 .turn_error = motion.turn_error,
+                 .straight = false};
         add_corners(hull.positions, values_of(motion.from), from);
         add_corners(hull.positions, values_of(motion.to), to);
-        if (is_dogleg(motion, machine)) {
-            // A dog leg leaves the hull of its ends, but not their box.
-            const AxisValues first = hull.positions.front();
-            AxisRange range{first, first};
-            for (const AxisValues& position : hull.positions) extend(range, position);
-            AxisSpread box;
-            for (size_t i = 0; i < axis_count; ++i) {
-                box.below[i] = first[i] - range.min[i];
-                box.above[i] = range.max[i] - first[i];
-            }
-            hull.positions.clear();
-            add_corners(hull.positions, first, box);
-        }
+        // A dog leg leaves the hull of its ends, but not their box.
+        if (is_dogleg(motion, machine)) hull.positions = corners_around(hull.positions);
         legs.push_back(std::move(hull));
+    }
+    for (Leg& hull : legs) {
+        // Bodies can be swept over so many positions.
+        if (hull.positions.size() > ConvexShape::max_positions)
+            hull.positions = corners_around(hull.positions);
+        if (hull.positions.size() <= ConvexShape::max_positions) continue;
+        path.legs.clear();
+        return path;
     }
     if (from.none()) legs.front().certain.push_back(values_of(motion.from));
     if (to.none()) legs.back().certain.push_back(values_of(motion.to));

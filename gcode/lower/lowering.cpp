@@ -225,6 +225,7 @@ struct Visitor {
     void operator()(const StraightProbe& command) {
         core::Motion motion = motion_to(command.end, core::MotionKind::feed, command.feed);
         motion.stops_at_contact = true;
+        motion.leaves_contact = !command.towards;
         events.emplace_back(motion);
         lowering.machine = where_probing_ends(lowering.offsets, motion.from, motion.to);
     }

@@ -44,7 +44,8 @@ struct Move {
     Vec3 to = Vec3(0.0); // where it ends after a probing move to its end
     AxisSet settles = every_axis;
     bool probes = false;
-    bool turns = false; // half a turn in X and Y instead of a line
+    bool turns = false;  // half a turn in X and Y instead of a line
+    bool leaves = false; // probes until the contact is lost
 };
 
 /// A run of the tool from a tip position. After a probing move that stopped early, moves are
@@ -81,6 +82,7 @@ struct Shop {
         motion.feed = what.kind == MotionKind::rapid ? 0.0 : 600.0;
         motion.settles = what.settles;
         motion.stops_at_contact = what.probes && !stop;
+        motion.leaves_contact = what.leaves && !stop;
         const Vec3 from = tip + off;
         for (int i = 0; i < 3; ++i)
             if (what.settles >> i & 1U) off[i] = 0.0;
@@ -109,6 +111,46 @@ TEST(Probing, ContactOfTheTipIsIntended) {
     // From the start down to the contact, 10 mm above the end.
     EXPECT_NEAR(shop.state.spread.above[2], 30.0, 1e-9);
     EXPECT_NEAR(shop.state.spread.below[2], -10.0, 0.1);
+}
+
+/// Deeper in the stock, the contact is never lost.
+TEST(Probing, LeavesAContactOnlyOutOfTheStock) {
+    const core::Setup setup = plate();
+    const auto verdict_of = [&](const Vec3& start, const Vec3& to) {
+        Shop shop(setup, start);
+        Move away = probe(to);
+        away.leaves = true;
+        return shop.move(away).verdict;
+    };
+    EXPECT_EQ(verdict_of({50, 50, 0}, {50, 50, 3}), Verdict::clear);
+    EXPECT_EQ(verdict_of({50, 50, -0.5}, {50, 50, 3}), Verdict::clear); // it is bent
+    EXPECT_EQ(verdict_of({50, 50, 0}, {50, 50, -15}), Verdict::collision);
+    EXPECT_EQ(verdict_of({50, 50, 5}, {50, 50, -15}), Verdict::collision);
+    EXPECT_EQ(verdict_of({-5, 50, -10}, {-9, 50, -10}), Verdict::clear);
+    EXPECT_EQ(verdict_of({-5, 50, -10}, {9, 50, -10}), Verdict::collision);
+    // After probing down, from the whole range in which that has ended.
+    Shop shop(setup, {50, 50, 2});
+    shop.move(probe({50, 50, -3}));
+    Move up = probe({50, 50, 6});
+    up.leaves = true;
+    EXPECT_EQ(shop.move(up).verdict, Verdict::clear);
+    shop.move({MotionKind::rapid, {50, 50, 2}});
+    shop.move(probe({50, 50, -3}));
+    Move down = probe({50, 50, -20});
+    down.leaves = true;
+    EXPECT_EQ(shop.move(down).verdict, Verdict::collision);
+}
+
+/// The positions along three axes are the corners of a box, twice.
+TEST(Probing, FollowsARangeAlongThreeAxes) {
+    for (const double x : {150.0, 200.0}) {
+        core::Setup setup = plate();
+        setup.fixtures.push_back(block_of({{170, 40, -30}, {180, 60, 60}}));
+        Shop shop(setup, {110, 50, 50});
+        EXPECT_EQ(shop.move(probe({120, 60, 20})).verdict, Verdict::clear);
+        const BlockResult incremental = shop.move({MotionKind::feed, {x, 70, 30}, 0});
+        EXPECT_EQ(incremental.verdict == Verdict::clear, x == 150.0);
+    }
 }
 
 TEST(Probing, GoesToItsEndWithoutContact) {

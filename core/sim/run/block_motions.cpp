@@ -205,7 +205,7 @@ void BlockRun::execute_motion(const Motion& motion) {
     } else if (block.judgement) {
         follow_path(motion, path);
     } else if (motion.stops_at_contact && use(motion) != FluteUse::cutting) {
-        check_probing(motion, path);
+        check_probing(motion, path, before);
     } else {
         check_corner(motion, path);
         check_path(motion, path, !is_certain);

@@ -163,8 +163,10 @@ struct BlockRun {
     /// The legs of a motion from everywhere where the machine may be; advances `state.spread`.
     Path take_path(const Motion& motion);
     /// Follows a probing move until its flutes make contact, which is its purpose, and checks the
-    /// other bodies up to there. The machine may then be anywhere on this way.
-    void check_probing(const Motion& motion, const Path& path);
+    /// other bodies up to there. The machine may then be anywhere on this way. One that leaves the
+    /// contact must come out of the stock. `before`: where the machine may be at its start.
+    void check_probing(const Motion& motion, const Path& path, const AxisSpread& before);
+    void check_leaving(const Path& path, const AxisSpread& before, TrackedPairs& found);
     /// Measures all bodies at rest wherever the machine may be.
     void check_rest(const Path& path);
     void check_corner(const Motion& motion, const Path& path);

@@ -110,9 +110,34 @@ Path BlockRun::take_path(const Motion& motion) {
     return path;
 }
 
-void BlockRun::check_probing(const Motion& motion, const Path& path) {
+/// The flutes may be in contact only where the move begins.
+void BlockRun::check_leaving(const Path& path, const AxisSpread& before, TrackedPairs& found) {
+    constexpr double deflection = 1.0; // mm: of a probe in contact
+    LegCheck check = leg_check(FluteUse::not_cutting);
+    for (const Leg& whole : path.legs) {
+        double contact = 0.0; // fraction of the leg
+        if (whole.straight) {
+            double start = deflection;
+            for (size_t i = 0; i < axis_count; ++i) start += before.below[i] + before.above[i];
+            contact = std::min(1.0, start / std::max(length_of(whole), 0.001));
+        }
+        if (contact > 0.0) {
+            TrackedPairs first;
+            check.run(stretch(whole, 0.0, contact), result.duration, state.stock, first);
+            first.remove_if(
+                [](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
+            for (const TrackedPair& pair : first) merge(entry(found, pair.pair, setup), pair);
+        }
+        if (contact < 1.0)
+            check.run(stretch(whole, contact, 1.0), result.duration, state.stock, found);
+    }
+}
+
+void BlockRun::check_probing(const Motion& motion, const Path& path, const AxisSpread& before) {
     TrackedPairs here;
-    if (!path.legs[0].straight) {
+    if (motion.leaves_contact) {
+        check_leaving(path, before, here);
+    } else if (!path.legs[0].straight) {
         LegCheck check = leg_check(FluteUse::not_cutting);
         for (const Leg& leg : path.legs) check.run(leg, result.duration, state.stock, here);
     } else {
@@ -145,7 +170,8 @@ void BlockRun::check_probing(const Motion& motion, const Path& path) {
         }
     }
     // The flutes are to make contact.
-    here.remove_if([](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
+    if (!motion.leaves_contact)
+        here.remove_if([](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
     for (TrackedPair& pair : here) {
         if (state.certain_stock && !pair.pair.fixture && pair.verdict > Verdict::undecided) {
             pair.verdict = Verdict::undecided;
