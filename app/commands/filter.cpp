@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -99,19 +100,33 @@ core::Result<FilteredProgram> FilteredProgram::of_file(const std::string& progra
     return tl::unexpected(core::Error{core::ErrorCode::io, {}, "cannot be read", program});
 }
 
+constexpr const char* owner_file = ".owner"; // holds the number of the filter's process
+
+/// Whether the filter that made a folder was killed. Until it has written its number, nobody knows.
+bool is_left_behind(const std::filesystem::path& folder) {
+    constexpr std::chrono::hours longest(24);
+    std::error_code failure;
+    const auto made_at = std::filesystem::last_write_time(folder, failure);
+    if (failure) return false;
+    if (std::filesystem::file_time_type::clock::now() - made_at > longest) return true;
+    const auto owner = core::file_bytes(folder / owner_file, 32);
+    const unsigned long number = owner ? std::strtoul(owner->c_str(), nullptr, 10) : 0;
+    return number != 0 && !core::platform::is_running(static_cast<unsigned>(number));
+}
+
 /// An empty folder for the copy of a program; empty if there is none. It is the same each time, so
 /// that the result of an unchanged copy is found again, unless another filter of the program runs.
 std::filesystem::path fresh_folder(const std::string& program) {
     namespace fs = std::filesystem;
-    constexpr std::chrono::hours longest(24); // a filter that was killed leaves its folder
     const fs::path base = filter_folder();
     if (base.empty()) return {};
     std::error_code failure;
     const fs::path usual = base / sha256_of(absolute_path(program)).substr(0, 16);
-    const auto made_at = fs::last_write_time(usual, failure);
-    if (!failure && fs::file_time_type::clock::now() - made_at > longest)
-        fs::remove_all(usual, failure);
-    if (fs::create_directory(usual, failure)) return usual;
+    if (is_left_behind(usual)) fs::remove_all(usual, failure);
+    if (fs::create_directory(usual, failure)) {
+        std::ofstream(usual / owner_file) << core::platform::process_id();
+        return usual;
+    }
     fs::path other = usual;
     other += fmt::format("-{}", core::platform::process_id());
     fs::remove_all(other, failure);
@@ -211,7 +226,7 @@ core::Result<ExitCode> filter_program(const FilterOptions& options) {
     const std::string text = passes ? passing_text(shown) : refusal_text(shown);
     std::fputs(printable(text).c_str(), stderr);
     if (passes) return pass_on(program, *result, original);
-    return status_of(*result) == 1 ? ExitCode::findings : ExitCode::failed;
+    return status_of(*result) > 1 ? ExitCode::failed : ExitCode::findings;
 }
 
 ExitCode filter(const FilterOptions& options) {

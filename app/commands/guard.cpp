@@ -26,6 +26,7 @@
 #include "app/setup/linuxcnc_kinematics.h"
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_file.h"
+#include "core/base/file_reads.h"
 #include "core/base/platform.h"
 #include "core/base/text.h"
 
@@ -198,12 +199,15 @@ private:
 class GuardRun {
 public:
     GuardRun(const GuardOptions& options, const SetupFile& setup, feeler_ring& ring,
-             ControlStatus status, double unit, ControlKinematics kinematics)
+             ControlStatus status, double unit, ControlKinematics kinematics,
+             std::optional<std::string> setup_text)
         : options_(options),
           setup_(setup),
           ring_(ring),
           status_(std::move(status)),
-          guard_(setup.setup, ring, unit, options.feed_tolerance, std::move(kinematics)),
+          guard_(setup.setup, ring, unit, options.feed_tolerance, std::move(kinematics),
+                 setup.speed_by_hand),
+          setup_text_(std::move(setup_text)),
           unit_(unit) {}
 
     void open_log();
@@ -225,6 +229,8 @@ private:
     ControlStatus status_;
     Guard guard_;
     std::optional<MotionLog> log_;
+    std::optional<std::string> setup_text_; // as it was read
+    bool setup_has_changed_ = false;
     double unit_ = 1.0;
     bool was_idle_ = true, said_disk_ = false;
     feeler_segment asked_for_{}; // the motion for which the status was asked for anew
@@ -272,10 +278,17 @@ std::string GuardRun::objection(const feeler_segment& motion) {
     if (was_idle_ || motion.tool != asked_for_.tool || motion.offset != asked_for_.offset) {
         was_idle_ = false;
         asked_for_ = motion;
+        setup_has_changed_ = core::file_bytes(options_.setup) != setup_text_;
         status_.ask_anew();
     }
     status_.ask_again();
     if (!status_.is_fresh() || !status_.state()) return awaits_status;
+    if (setup_has_changed_)
+        return "The set-up file has changed since the guard has read it: start the guard again.";
+    if (motion.tool != status_.state()->tool)
+        return fmt::format(
+            "LinuxCNC has tool {} in the spindle, and feeler-tp.tool-number says {}.",
+            status_.state()->tool, motion.tool);
     return difference(setup_, *status_.state(), unit_, options_.tolerance);
 }
 
@@ -327,6 +340,7 @@ std::string GuardRun::summary() const {
 
 core::Result<ExitCode> guard_machine(const GuardOptions& options) {
     FEELER_TRY(const IniFile ini, known_ini(options.ini));
+    std::optional<std::string> setup_text = core::file_bytes(options.setup);
     FEELER_TRY(SetupFile setup, setup_for(options, ini));
     const double unit = ini.machine_unit == gcode::LengthUnit::inch ? 25.4 : 1.0;
     take_speeds(setup.setup.machine, ini, unit);
@@ -338,7 +352,8 @@ core::Result<ExitCode> guard_machine(const GuardOptions& options) {
     ControlKinematics kinematics(
         unit, is_trivial(ini) ? trivial_kinematics(ini) : *setup.environment.kinematics,
         setup.setup.machine, options.tolerance);
-    GuardRun run(options, setup, *ring, std::move(status), unit, std::move(kinematics));
+    GuardRun run(options, setup, *ring, std::move(status), unit, std::move(kinematics),
+                 std::move(setup_text));
     run.open_log();
     print_note("watching LinuxCNC\n");
     for (const std::string& assumption : setup.assumptions) print_note(assumption + "\n");

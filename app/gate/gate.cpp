@@ -46,7 +46,7 @@ void Gate::say(const std::string& text) {
 
 void Gate::sender_came() {
     sender_left();
-    needs_asking_ = true;
+    ++changes_;
     greets_ = true; // as a controller that was reset when its port was opened, when it stands still
 }
 
@@ -130,7 +130,7 @@ void Gate::drop_unsent() {
     is_judging_ = false;
     word_.reset();
     if (asking_ == Asking::check) asking_ = Asking::nothing;
-    needs_asking_ = true;
+    ++changes_;
     for (const LinePointer& line : lines_)
         if (line->stage == Stage::checking || line->stage == Stage::ready)
             line->stage = Stage::waiting;
@@ -160,7 +160,7 @@ bool Gate::handle_next() {
         answer(line, "ok");
         return true;
     case GrblLine::request:
-        if (line->text == "$C" && needs_asking_ && !is_checking_only_ && !is_alarmed_) {
+        if (line->text == "$C" && needs_asking() && !is_checking_only_ && !is_alarmed_) {
             ask_control(); // in check mode, Grbl answers no questions
             return false;
         }
@@ -168,7 +168,7 @@ bool Gate::handle_next() {
         return true;
     case GrblLine::home:
     case GrblLine::unlock:
-        needs_asking_ = true;
+        ++changes_;
         if (line->kind == GrblLine::unlock && !is_derailed_) is_latched_ = false;
         line->stage = Stage::ready;
         return true;
@@ -189,7 +189,7 @@ bool Gate::handle_motion(const LinePointer& line) {
                (is_news ? grbl_message("Feeler: " + latch_) + "\r\n" : "") + std::string(locked));
         return true;
     }
-    if (needs_asking_ && is_checking_only_) {
+    if (needs_asking() && is_checking_only_) {
         answer(line, leave_check_mode());
         return true;
     }
@@ -198,13 +198,14 @@ bool Gate::handle_motion(const LinePointer& line) {
     // know before all jogs have ended.
     const size_t planner = facts_.planner.value_or(usual_planner);
     const size_t most_jogs = planner > 3 ? planner - 2 : 1;
-    needs_asking_ = needs_asking_ || (is_jog ? jogs_ >= most_jogs : has_jogged_);
+    const bool was_jogged = is_jog ? jogs_ >= most_jogs : has_jogged_;
+    if (was_jogged && !needs_asking()) ++changes_;
     const bool has_unsent = std::any_of(lines_.begin(), lines_.end(), [](const LinePointer& other) {
         return other->stage == Stage::ready;
     });
     // A jog may fail, and what comes after it would then start elsewhere.
     if (is_jog && (!outstanding_.empty() || has_unsent)) return false;
-    if (needs_asking_) {
+    if (needs_asking()) {
         if (!has_unsent) ask_control();
         return false;
     }
@@ -227,8 +228,13 @@ void Gate::take_verdict(const LinePointer& line, LineVerdict verdict) {
     if (verdict.answer.may_move) {
         line->verdict = std::move(verdict);
         line->stage = Stage::ready;
-        needs_asking_ = needs_asking_ || line->verdict.asks_anew;
+        if (line->verdict.asks_anew) ++changes_;
         has_jogged_ = has_jogged_ || line->kind == GrblLine::jog;
+        return;
+    }
+    if (verdict.asks_first) {
+        ++changes_;
+        line->stage = Stage::waiting;
         return;
     }
     refuse(line, verdict);
@@ -316,6 +322,8 @@ bool Gate::handle_own_command(const LinePointer& line) {
         answer(line, grbl_message("Feeler: " + why) + "\r\nerror:3");
         return true;
     };
+    const bool is_command = text.starts_with('$') || text.starts_with('[');
+    if (!is_command) return refuse_it(line->text + " is nothing that Grbl understands.");
     if (!text.starts_with(own_command))
         return refuse_it(
             line->text
@@ -336,7 +344,7 @@ bool Gate::handle_own_command(const LinePointer& line) {
         answer(line, "ok");
         return true;
     }
-    if (word_ && !needs_asking_) { // it has taken effect
+    if (word_ && !needs_asking()) { // it has taken effect
         const bool is_done = is_set_up_ || word_->kind == OperatorWord::Kind::sets_up;
         word_.reset();
         if (said_.empty()) say("the zero is set, and motions are checked.");
@@ -360,7 +368,7 @@ bool Gate::handle_own_command(const LinePointer& line) {
                    is_judging_ = false;
                    if (problem->empty()) {
                        word_ = word;
-                       needs_asking_ = true;
+                       ++changes_;
                    } else {
                        answer(line, grbl_message("Feeler: " + *problem) + "\r\nerror:3");
                    }
@@ -437,7 +445,7 @@ void Gate::take_answer(const std::string& text) {
     said_no_answer_ = false;
     if (outstanding_.empty()) {
         links_.note("Feeler: the controller answers where nothing was asked: " + text);
-        needs_asking_ = true;
+        ++changes_;
         return;
     }
     const Sent sent = outstanding_.front();
@@ -452,7 +460,10 @@ void Gate::take_answer(const std::string& text) {
     const bool was_checked = line->kind == GrblLine::code || line->kind == GrblLine::jog;
     answer(line, text);
     if (text == "ok") {
-        if (line->kind == GrblLine::unlock || line->kind == GrblLine::home) is_alarmed_ = false;
+        if (line->kind == GrblLine::unlock || line->kind == GrblLine::home) {
+            is_alarmed_ = false;
+            ++changes_; // it may have been asked before
+        }
         if (line->kind == GrblLine::home) {
             may_be_lost_ = false;
             was_homed_ = was_homed_ || !std::exchange(is_homed_, true);
@@ -534,7 +545,8 @@ void Gate::take_status(const GrblStatus& status) {
         is_checking_only_ = true;
         // Nothing moves, and Grbl answers no questions.
         asking_ = Asking::nothing;
-        if (knows_settings_) needs_asking_ = has_jogged_ = false;
+        if (knows_settings_) changes_known_ = changes_;
+        has_jogged_ = has_jogged_ && !knows_settings_;
         return knows_settings_ ? void() : lock_waiting();
     }
     if (!is_idle) return; // asked again
@@ -586,6 +598,7 @@ void Gate::take_alarm() {
 void Gate::ask_control() {
     if (asking_ != Asking::nothing || awaits_reset_ || !outstanding_.empty()) return;
     asking_ = Asking::status;
+    changes_asked_for_ = changes_;
     asked_status_ = now_;
     links_.to_controller(std::string_view(&status_request, 1));
 }
@@ -630,7 +643,9 @@ void Gate::take_facts() {
     facts_.is_lost = std::exchange(may_be_lost_, false) && glm::length(position) < least_travel
                      && (!was_asked_ || has_moved_ || glm::length(was_at_) >= least_travel);
     if (facts_.is_lost) is_homed_ = false;
-    facts_.was_homed = std::exchange(was_homed_, false) && was_asked_;
+    // What it said is of before, if it was homed while it was asked.
+    const bool is_current = changes_ == changes_asked_for_;
+    facts_.was_homed = is_current && std::exchange(was_homed_, false) && was_asked_;
     was_asked_ = true;
     was_at_ = position;
     has_moved_ = false;
@@ -651,7 +666,8 @@ void Gate::take_facts() {
             is_set_up_ = outcome->is_set_up;
             if (epoch != epoch_) return;
             asking_ = Asking::nothing;
-            needs_asking_ = has_jogged_ = false;
+            changes_known_ = changes_asked_for_;
+            has_jogged_ = false;
             answered_through_ = made_through_ = followed_ = last_number_;
             go_on();
         });

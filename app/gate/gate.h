@@ -80,6 +80,7 @@ private:
     void send_line(const LinePointer& line);
     static bool is_plain(const Line& line);
 
+    bool needs_asking() const { return changes_ != changes_known_; }
     void ask_control();
     void ask_next_fact();
     void lock_waiting();
@@ -99,8 +100,10 @@ private:
     bool is_derailed_ = false;  // lines after one that Grbl refused are on their way
 
     // What is known of the control.
-    bool needs_asking_ = true; // before the next line that may move
-    bool has_jogged_ = false;  // Grbl takes no G-code until the jogs have ended
+    // What makes it necessary to ask it before the next line that may move: counted; known of since
+    // it was asked last; and since it is being asked.
+    uint64_t changes_ = 1, changes_known_ = 0, changes_asked_for_ = 0;
+    bool has_jogged_ = false; // Grbl takes no G-code until the jogs have ended
     bool knows_settings_ = false, was_reset_ = false;
     bool may_be_lost_ = false;            // where the machine is, by a restart
     core::Vec3 was_at_ = core::Vec3(0.0); // when it was asked last, mm

@@ -19,6 +19,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 #endif
@@ -199,6 +200,12 @@ core::Result<void> GateServer::open_controller(const GatePorts& ports) {
     if (!error) port.set_option(Option::parity(Option::parity::none), error);
     if (!error) port.set_option(Option::stop_bits(Option::stop_bits::one), error);
     if (!error) port.set_option(Option::flow_control(Option::flow_control::none), error);
+#ifndef _WIN32
+    // Otherwise another program could open the port, too, and move the machine. Windows has no
+    // other way.
+    if (!error && ::ioctl(port.native_handle(), TIOCEXCL) != 0)
+        error = std::error_code(errno, std::generic_category());
+#endif
     if (error) return not_open(name, error);
     begin(stream_of(std::move(port)));
     return {};

@@ -4,7 +4,6 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <set>
 #include <sstream>
@@ -18,6 +17,7 @@
 #include "app/setup/program_settings.h"
 #include "app/setup/setup_length.h"
 #include "app/setup/toml_edit.h"
+#include "core/base/file_reads.h"
 #include "core/base/rule_table.h"
 #include "gcode/language/canonical.h"
 #include "gcode/language/dialect.h"
@@ -249,10 +249,7 @@ core::Result<LineCheck> LineCheck::open(const std::string& setup, const Options&
     check.path_ = setup;
     check.tolerance_ = options.tolerance;
     FEELER_TRY(SetupFile file, read_setup(setup, {})); // says what is wrong with the file
-    std::ifstream in(setup, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    check.text_ = text.str();
+    check.text_ = core::file_bytes(setup).value_or("");
     check.takes_offsets_ = file.infers_frame;
     check.is_set_up_ = !check.takes_offsets_;
     check.zero_is_set_ = options.zero_is_set;
@@ -423,12 +420,14 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
 void LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
                             uint64_t made_through, const std::optional<OperatorWord>& word) {
     using Kind = OperatorWord::Kind;
+    has_changed_ = core::file_bytes(path_) != text_;
     if (judge_) follow(made_through, waiting_.size());
     // A part of the others may have been made, but not in check mode.
     has_cut_ = has_cut_ || (made_ && made_->stock.log.size() > 0) || (!facts.is_dry && cuts() > 0);
     const core::AxisPosition before = ahead_ ? ahead_->position : core::AxisPosition();
     waiting_.clear();
     ahead_.reset();
+    jogged_.reset();
     problem_.clear();
     const bool says_zero = (word && word->kind != Kind::sets_up)
                            || (std::exchange(zero_is_set_, false) && !facts.is_lost);
@@ -496,6 +495,8 @@ std::string LineCheck::tool_note() const {
 std::string LineCheck::objection(const gcode::Offsets& offsets,
                                  std::optional<core::ToolNumber> called) const {
     if (!problem_.empty()) return problem_;
+    if (has_changed_)
+        return "The set-up file has changed since the gate has read it: start the gate again.";
     const std::string name = gcode::name_of_offset(offsets.active);
     if (takes_offsets_ && name != file_->stock_frame)
         return fmt::format(
@@ -578,12 +579,38 @@ LineVerdict LineCheck::judge_motions(LineVerdict verdict, std::vector<core::Even
         return verdict;
     }
     rewind();
-    if (!may_retreat_) return verdict;
+    verdict.asks_first = jogged_.has_value();
+    if (!may_retreat_ || verdict.asks_first) return verdict;
     const LiveAnswer retreat = judge_->judge_retreat(events, 0.0, *ahead_);
     if (retreat.may_move)
         verdict.answer = retreat;
     else
         rewind();
+    return verdict;
+}
+
+LineVerdict LineCheck::judge_jog(LineVerdict verdict, std::vector<core::Event>& events) {
+    core::AxisSpread& spread = ahead_->spread;
+    core::AxisRange range;
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        const double here = ahead_->position[i].value_or(0.0);
+        range.min[i] = jogged_ ? std::min(jogged_->min[i], here) : here;
+        range.max[i] = jogged_ ? std::max(jogged_->max[i], here) : here;
+        spread.below[i] = here - range.min[i];
+        spread.above[i] = range.max[i] - here;
+    }
+    for (core::Event& event : events)
+        if (auto* const motion = std::get_if<core::Motion>(&event)) motion->settles = 0;
+    const core::AxisPosition before = ahead_->position;
+    verdict = judge_motions(std::move(verdict), events);
+    if (!verdict.answer.may_move) return verdict;
+    for (size_t i = 0; i < core::axis_count; ++i) {
+        const double travel = ahead_->position[i].value_or(0.0) - before[i].value_or(0.0);
+        range.min[i] += std::min(travel, 0.0);
+        range.max[i] += std::max(travel, 0.0);
+    }
+    jogged_ = range;
+    ahead_->spread = {};
     return verdict;
 }
 
@@ -682,7 +709,9 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
         if (std::string why = objection(lowering.offsets, called); !why.empty())
             return not_understood(std::move(why), 9);
         verdict.answer.may_move = false;
-        verdict = judge_motions(std::move(verdict), events);
+        if (!is_jog) jogged_.reset(); // the gate has asked where they have ended
+        verdict = is_jog ? judge_jog(std::move(verdict), events)
+                         : judge_motions(std::move(verdict), events);
         if (!verdict.answer.may_move) return verdict;
     } else {
         judge_->follow(events, *ahead_);

@@ -11,6 +11,7 @@
 #include "app/guard/motion_judge.h"
 #include "app/setup/setup_file.h"
 #include "core/base/result.h"
+#include "core/motion/path.h"
 #include "gcode/exec/interpreter.h"
 #include "gcode/lower/lowering.h"
 
@@ -25,6 +26,7 @@ struct LineVerdict {
     bool is_plain = false;         // Grbl has no reason to refuse it
     bool stops_at_contact = false; // a probing motion
     bool asks_anew = false;        // what is known of the control does not hold behind it
+    bool asks_first = false;       // it may be sent if the control stands where it is expected
 };
 
 /// What the operator says while nothing moves; takes effect with synchronise.
@@ -61,7 +63,9 @@ public:
     /// Checks a line that Grbl has read (as_grbl_reads): G-code, or $J= with `is_jog`. Those that
     /// may be sent are taken to be run after the ones before, in the order of their numbers.
     ///
-    /// The first motions after synchronise may also be such that lose no clearance.
+    /// The first motions after synchronise may also be such that lose no clearance. A jog may have
+    /// been cancelled at any place, also by a button of the machine, so the next one is checked
+    /// from wherever it may begin.
     LineVerdict judge(uint64_t number, const std::string& text, bool is_jog);
 
     /// Follows the cuts of lines up to this number, which have been made; at most `most` of them.
@@ -96,10 +100,12 @@ private:
     LineVerdict judge_motions(LineVerdict verdict, std::vector<core::Event>& events);
     void note_failure(const core::Result<void>& done);
     std::string tool_note() const;
+    LineVerdict judge_jog(LineVerdict verdict, std::vector<core::Event>& events);
     void rewind();
     size_t cuts() const;
 
-    std::string path_, text_; // of the set-up
+    std::string path_, text_;  // of the set-up, as it was read
+    bool has_changed_ = false; // since then
     double tolerance_ = 0.01;
     bool takes_offsets_ = false; // the set-up states none
     std::optional<SetupFile> file_;
@@ -112,6 +118,7 @@ private:
     std::optional<core::SimulatorState> made_;      // behind those that have been made
     std::deque<Permitted> waiting_;                 // what is in `ahead_` and not in `made_`
     std::optional<core::ToolNumber> tool_, called_; // in the spindle; by T
+    std::optional<core::AxisRange> jogged_;         // where the machine may be since jogs began, mm
     core::Vec3 step_ = core::Vec3(0.0);             // of the axes, mm; 0: not known
     double arc_error_ = 0.0;                        // how far Grbl's chords are from an arc, mm
     // mm: Z of the control minus that of the bodies, since a tool was changed or the zero was

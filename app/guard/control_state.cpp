@@ -19,6 +19,7 @@ core::Result<ControlState> read_control_state(std::string_view line) {
         state.rotation_deg = json.at("rotation").get<double>();
         state.tool = json.at("tool").get<int>();
         state.tool_length = json.at("tool_length").get<double>();
+        state.is_homed = json.at("homed").get<bool>();
     } catch (const nlohmann::json::exception& error) {
         return core::fail(core::ErrorCode::syntax,
                           fmt::format("the status of LinuxCNC cannot be read: {}", error.what()));
@@ -28,6 +29,7 @@ core::Result<ControlState> read_control_state(std::string_view line) {
 
 std::string difference(const SetupFile& setup, const ControlState& control, double unit,
                        double tolerance) {
+    if (!control.is_homed) return "The machine is not homed, so nobody knows where it is.";
     if (control.work_offset < 1 || control.work_offset > 9)
         return "LinuxCNC does not say which work offset it uses: select one, for example by G54.";
     const auto index = static_cast<size_t>(control.work_offset - 1);

@@ -18,6 +18,7 @@ struct ControlState {
     core::AxisValues origin = {}; // of that work offset, units of the machine and degrees
     double rotation_deg = 0.0;    // about Z
     int tool = 0;                 // in the spindle
+    bool is_homed = false;        // all joints
     double tool_length = 0.0;     // as the tool table has it, units of the machine
 };
 
@@ -27,8 +28,9 @@ struct ControlState {
 core::Result<ControlState> read_control_state(std::string_view line);
 
 /// How the control differs from the set-up by more than `tolerance`, mm or degrees: the work offset
-/// in use, its rotation, or the length of the tool in the spindle. A sentence with both values;
-/// empty if there is no difference. `unit`: mm per unit of the machine.
+/// in use, its rotation, or the length of the tool in the spindle; or that its place is not known.
+/// A sentence with both values; empty if there is no difference. `unit`: mm per unit of the
+/// machine.
 std::string difference(const SetupFile& setup, const ControlState& control, double unit,
                        double tolerance);
 

@@ -62,8 +62,8 @@ bool claim(feeler_ring& ring) {
 }
 
 Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance,
-             ControlKinematics kinematics)
-    : ring_(ring), check_(setup, std::move(kinematics)) {
+             ControlKinematics kinematics, bool speed_by_hand)
+    : ring_(ring), check_(setup, std::move(kinematics), speed_by_hand) {
     ring_.feed_tolerance = feed_tolerance / unit;
     ring_.turn_tolerance = std::min(feed_tolerance, turn_tolerance) / unit;
     cleared_ = feeler_load(&ring_.cleared);

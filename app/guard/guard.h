@@ -31,9 +31,9 @@ public:
     /// The ring must outlive the object. It is taken over where an earlier guard has left it: the
     /// motions that wait are checked. `unit`: mm per unit of the machine's lengths.
     /// `feed_tolerance`: with which feeds are blended where a program states none, mm.
-    /// `kinematics`: with which motions are read and compared.
+    /// `kinematics`: with which motions are read and compared. `speed_by_hand`: as LiveCheck.
     Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance,
-          ControlKinematics kinematics);
+          ControlKinematics kinematics, bool speed_by_hand = false);
     /// The planner's positions are those of the axes, and joints are not compared.
     Guard(const core::Setup& setup, feeler_ring& ring, double unit, double feed_tolerance)
         : Guard(setup, ring, unit, feed_tolerance, ControlKinematics(unit)) {}

@@ -132,20 +132,21 @@ std::optional<core::ToolNumber> tool_of(const LiveMotion& motion, const core::Se
     return number;
 }
 
-core::SpindleChange spindle_of(const LiveMotion& motion) {
+/// `speed_by_hand`: a started spindle turns without a commanded speed.
+core::SpindleChange spindle_of(const LiveMotion& motion, bool speed_by_hand) {
     core::SpindleChange spindle;
     spindle.direction = motion.turns_on == 1   ? core::SpindleDirection::clockwise
                         : motion.turns_on == 2 ? core::SpindleDirection::counterclockwise
                                                : core::SpindleDirection::stopped;
-    if (motion.turns_on != 0) spindle.speed = std::max(motion.speed, 1.0);
+    if (motion.turns_on != 0) spindle.speed = std::max(motion.speed, speed_by_hand ? 1.0 : 0.0);
     return spindle;
 }
 
 } // namespace
 
 // What LinuxCNC does at corners is in the ring.
-LiveCheck::LiveCheck(const core::Setup& setup, ControlKinematics kinematics)
-    : judge_(setup), kinematics_(std::move(kinematics)) {}
+LiveCheck::LiveCheck(const core::Setup& setup, ControlKinematics kinematics, bool speed_by_hand)
+    : judge_(setup), kinematics_(std::move(kinematics)), speed_by_hand_(speed_by_hand) {}
 
 /// A straight motion between two places of the axes.
 core::Motion LiveCheck::line_of(const LiveMotion& motion, const core::AxisValues& from,
@@ -161,7 +162,8 @@ core::Motion LiveCheck::line_of(const LiveMotion& motion, const core::AxisValues
     (line.tip ? line.tip->turn_error : line.turn_error) = motion.turn_error;
     line.path_error = motion.path_error;
     line.style = core::RapidStyle::straight;
-    line.stops_at_contact = motion.purpose == FEELER_PROBE;
+    line.stops_at_contact = is_probing(motion);
+    line.leaves_contact = motion.purpose == FEELER_PROBE_AWAY;
     if (line.kind == core::MotionKind::feed) line.feed = 60.0 * motion.feed;
     return line;
 }
@@ -197,7 +199,7 @@ std::vector<core::Event> LiveCheck::events_of(const LiveMotion& motion,
     std::vector<core::Event> events;
     const std::optional<core::ToolNumber> tool = tool_of(motion, judge_.setup());
     if (!state.tool_known || state.tool != tool) events.emplace_back(core::ToolChange{tool});
-    const core::SpindleChange spindle = spindle_of(motion);
+    const core::SpindleChange spindle = spindle_of(motion, speed_by_hand_);
     if (spindle.direction != state.spindle.direction || spindle.speed != state.spindle.speed)
         events.emplace_back(spindle);
     events.emplace_back(path_mode_of(motion));
@@ -336,7 +338,7 @@ std::string LiveCheck::objection(const LiveMotion& motion) const {
         return "One of its values is not a number.";
     if (!motion.problem.empty()) return motion.problem;
     if (motion.shape < FEELER_LINE || motion.shape > FEELER_TAP || motion.purpose < FEELER_RAPID
-        || motion.purpose > FEELER_INDEXER || motion.blending > FEELER_BLENDED)
+        || motion.purpose > FEELER_PROBE_AWAY || motion.blending > FEELER_BLENDED)
         return "It is of a kind that is not known.";
     if (motion.blending == FEELER_BLENDED
         && (motion.purpose != FEELER_RAPID || moves_others(motion)) && !(motion.tolerance > 0.0))
@@ -409,7 +411,7 @@ LiveAnswer LiveCheck::judge(const LiveMotion& queued) {
         LiveAnswer answer = judge_.judge_with_each_tool(events, *ahead_);
         if (!answer.may_move) return refused(std::move(answer));
     }
-    if (motion.purpose == FEELER_PROBE)
+    if (is_probing(motion))
         if (std::string why = judge_.problem_beyond_contact(events, *ahead_); !why.empty())
             return refused({.reason = std::move(why)});
     LiveAnswer answer = judge_.judge(events, *ahead_);
@@ -424,8 +426,11 @@ LiveAnswer LiveCheck::judge_retreat(const LiveMotion& queued) {
         LiveAnswer answer = judge_.judge_with_each_tool(events, *ahead_);
         if (!answer.may_move) return refused(std::move(answer));
     }
+    // Bounds of a motion include how far the control may round its corners; those at rest do not.
+    constexpr double most_rounding = 0.1; // mm
     const double rounding =
-        (motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0) + motion.path_error;
+        std::min(motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0, most_rounding)
+        + motion.path_error;
     LiveAnswer answer = judge_.judge_retreat(events, rounding, *ahead_);
     if (answer.may_move) return permitted(queued, motion);
     if (answer.cure.empty())

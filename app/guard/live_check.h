@@ -22,7 +22,8 @@ namespace app {
 /// Motions are those of the ring (feeler_ring.h), in their order, as `kinematics` reads them.
 class LiveCheck {
 public:
-    LiveCheck(const core::Setup& setup, ControlKinematics kinematics);
+    /// `speed_by_hand`: a spindle that is switched on turns even at a speed of 0.
+    LiveCheck(const core::Setup& setup, ControlKinematics kinematics, bool speed_by_hand);
 
     LiveMotion read(const feeler_segment& motion) const { return kinematics_.read(motion); }
 
@@ -74,6 +75,7 @@ private:
 
     MotionJudge judge_;
     ControlKinematics kinematics_;
+    bool speed_by_hand_ = false;
     std::optional<core::SimulatorState> ahead_; // after all motions that may move
     std::optional<core::SimulatorState> made_;  // after those that have been made
     std::deque<Permitted> waiting_;             // what is in `ahead_` and not in `made_`

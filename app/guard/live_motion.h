@@ -21,6 +21,10 @@ struct LiveMotion : feeler_segment {
     std::string problem; // why it cannot be checked; empty if it can
 };
 
+inline bool is_probing(const feeler_segment& motion) {
+    return motion.purpose == FEELER_PROBE || motion.purpose == FEELER_PROBE_AWAY;
+}
+
 /// Whether axes besides X, Y and Z move.
 bool moves_others(const feeler_segment& motion);
 

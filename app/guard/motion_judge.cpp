@@ -172,7 +172,6 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
     }
     // Out of what it has cut, or of what the set-up still takes for stock.
     const bool goes_up = goes_straight_up(events);
-    // Bounds of a motion include what the control may round off; those at rest do not.
     const double slack = retreat_tolerance + rounding;
     const auto comes_nearer = [&](const core::PairClearance& pair) {
         const auto known = std::find_if(before.pairs.begin(), before.pairs.end(),

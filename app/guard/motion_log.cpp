@@ -124,8 +124,8 @@ void MotionLog::State::write_motion(const LiveMotion& motion) {
         if (last) file << comment_of("moved in another way, such as by hand") << "\n";
         file << "G0" << axis_words(motion.from, last ? last->to : motion.from, true) << "\n";
     }
-    const bool is_rapid = motion.purpose != FEELER_FEED && motion.purpose != FEELER_CURVE
-                          && motion.purpose != FEELER_PROBE;
+    const bool is_rapid =
+        motion.purpose != FEELER_FEED && motion.purpose != FEELER_CURVE && !is_probing(motion);
     if (motion.shape == FEELER_LINE) {
         file << (is_rapid ? "G0" : "G1") << axis_words(motion.to, motion.from, is_rapid);
         if (!is_rapid) file << fmt::format(" F{:.3f}", 60.0 * motion.feed);

@@ -11,6 +11,7 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/store/result_store.h"
+#include "app/setup/setup_file.h"
 
 namespace app {
 namespace {
@@ -55,7 +56,21 @@ core::Result<ProgramResult> filter_result(const CheckJob& job, ResultStore* stor
     return result;
 }
 
-bool may_load(const ProgramResult& result) { return status_of(result) == 0; }
+namespace {
+
+/// The assumption that a work offset is another one than on the control; empty if there is none.
+std::string_view offset_difference(const ProgramResult& result) {
+    const auto found = std::find_if(
+        result.assumptions.begin(), result.assumptions.end(),
+        [](const std::string& assumption) { return assumption.ends_with(differs_from_variables); });
+    return found == result.assumptions.end() ? std::string_view() : std::string_view(*found);
+}
+
+} // namespace
+
+bool may_load(const ProgramResult& result) {
+    return status_of(result) == 0 && offset_difference(result).empty();
+}
 
 std::string refusal_text(const ProgramResult& result) {
     constexpr size_t most = 5;
@@ -65,6 +80,14 @@ std::string refusal_text(const ProgramResult& result) {
     for (const StoredFinding& finding : result.findings)
         if (finding.severity == core::Severity::error && errors++ < most)
             text += "\n" + finding_words(finding);
+    if (const std::string_view differing = offset_difference(result); !differing.empty())
+        text += "\n"
+                + wrapped(fmt::format("{}. So the check is not about the place where the control "
+                                      "would run the program. State the offset as it is, or leave "
+                                      "it out of the set-up: then that of the control counts, and "
+                                      "the program must be loaded again after touching off.",
+                                      differing),
+                          0, 2);
     if (errors > most)
         text +=
             fmt::format("\n{} in all; \"feeler check\" lists them.\n", counted(errors, "error"));

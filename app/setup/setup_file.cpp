@@ -330,8 +330,7 @@ void read_offsets(TableReader& table, SetupFile& file) {
         for (size_t axis = 0; axis < core::axis_count; ++axis)
             origin[axis] = offset->number_or(axis_keys[axis], measure_along(axis), 0.0);
         if (of_variables != gcode::AxisValues{} && of_variables != origin)
-            file.assumptions.push_back(fmt::format(
-                "{} is taken from [offsets]; the variables file has another value", name));
+            file.assumptions.push_back(fmt::format("{}{}", name, differs_from_variables));
         offset->finish();
         if (!file.offsets_set.insert(static_cast<int>(*index)).second)
             table.refuse(name.c_str(),

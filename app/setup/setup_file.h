@@ -57,6 +57,10 @@ struct ImportedBodies {
     std::string stock, part; // names of bodies in it; or empty
 };
 
+/// The end of an assumption about an offset that the set-up states otherwise than the control.
+inline constexpr std::string_view differs_from_variables =
+    " is taken from [offsets]; the variables file has another value";
+
 /// A set-up file that has been read.
 struct SetupFile {
     std::string path; // as the user gave it

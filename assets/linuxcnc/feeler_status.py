@@ -46,6 +46,7 @@ def status_of(stat):
         "rotation": offset[2],
         "tool": stat.tool_in_spindle,
         "tool_length": length,
+        "homed": all(stat.homed[: stat.joints]),
     }
 
 

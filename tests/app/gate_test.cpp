@@ -387,6 +387,19 @@ TEST_F(CheckedLines, KnowOnlyToolsOfGrbl) {
 }
 
 /// The clearance of many small steps does not add up.
+TEST_F(CheckedLines, AreJogsFromWhereverTheLastOneMayHaveEnded) {
+    check_.synchronise(facts_at_zero(), core::Vec3(100, 0, 5), number_);
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(judge("$J=G91Y1F1500", true).answer.may_move);
+    EXPECT_TRUE(judge("$J=Y60F1500", true).answer.may_move);
+    const app::LineVerdict beside = judge("$J=X0F1500", true); // the clamp is on the way
+    EXPECT_FALSE(beside.answer.may_move);
+    EXPECT_TRUE(beside.asks_first);
+    EXPECT_TRUE(judge("$J=G91X20F1500", true).answer.may_move);
+    check_.synchronise(facts_at_zero(), core::Vec3(120, 60, 5), number_);
+    EXPECT_TRUE(judge("$J=X0F1500", true).answer.may_move);
+    EXPECT_FALSE(judge("$J=X120Y0F1500", true).answer.may_move);
+}
+
 TEST_F(CheckedLines, DoNotCreepTowardsABody) {
     check_.synchronise(facts_at_zero(), core::Vec3(54.5, 0, 5), 0); // 0.5 from the clamp
     EXPECT_TRUE(passes("G91G0X0.009"));
@@ -693,6 +706,47 @@ TEST_F(GatedSender, MustConfirmTheZeroAfterTheFirstHoming) {
     at_sender_.clear();
     say("$FEELER=NEW");
     send("$H\nG0X6\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+}
+
+/// What the controller said of itself is of before the homing.
+TEST_F(GatedSender, MayHomeWhileTheGateAsks) {
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n");
+    time_ = 5000;
+    gate_.tick(time_);
+    gate_.from_controller(fmt::format("<Idle|MPos:{}|FS:0,0>\r\n", position_));
+    ASSERT_EQ(at_controller_, "$I\n");
+    gate_.from_sender("$H\n");
+    position_ = "100.000,0.000,5.000";
+    play_controller();
+    send("G0X50\n"); // clear from where the machine was, and not from there
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("was homed after the zero was set")));
+    EXPECT_THAT(run_, ElementsAre());
+}
+
+TEST_F(GatedSender, IsToldThatTheSetupWasEdited) {
+    begin();
+    send("G0X5\n");
+    EXPECT_EQ(at_sender_.back(), "ok");
+    folder_.write("router.toml", bodies + "# corrected\n");
+    send("$X\nG0X6\n");
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("set-up file has changed")));
+}
+
+/// It may have been cancelled by a button on the board.
+TEST_F(GatedSender, JogsFromWhereverAJogBeforeMayHaveEnded) {
+    begin();
+    send("G0X100\nZ5\n");
+    position_ = "100.000,0.000,5.000";
+    send("$J=Y60F1500\n");
+    position_ = "100.000,30.000,5.000";
+    send("$J=X0F1500\n"); // through the clamp
+    EXPECT_EQ(at_sender_.back(), "error:9");
+    send("$J=Y60F1500\n");
+    position_ = "100.000,60.000,5.000";
+    send("$J=X0F1500\n");
     EXPECT_EQ(at_sender_.back(), "ok");
 }
 

@@ -332,6 +332,24 @@ TEST_F(GuardedMachine, AllowsOnlyRetreatsAfterAViolation) {
     EXPECT_EQ(machine_.ring->latched, 0U);
 }
 
+/// A wide tolerance of the path is no leave to come nearer.
+TEST_F(GuardedMachine, LosesNoClearanceOnRetreatByRoundedCorners) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(54.5, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.abort_at_rest();
+    machine_.jog(46, 0, 20); // 9 mm from the clamp
+    machine_.next.blending = FEELER_BLENDED;
+    machine_.next.tolerance = 8.0;
+    machine_.rapid(50, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    EXPECT_THAT(told_.back(), HasSubstr("nearer"));
+    machine_.abort_at_rest();
+    machine_.next.tolerance = 0.1;
+    const uint64_t away = machine_.rapid(30, 0, 20);
+    EXPECT_EQ(permitted(), away);
+}
+
 TEST_F(GuardedMachine, MayComeNearerOnRetreatToWhatIsFar) {
     machine_.rapid(0, 0, 30);
     machine_.rapid(54.5, 0, 20);
@@ -494,7 +512,7 @@ TEST_F(GuardedMachine, RefusesWhatItCannotCheck) {
              [](auto& motion) { motion.tolerance = std::numeric_limits<double>::quiet_NaN(); }})
         EXPECT_THAT(refusal_of(change), HasSubstr("not a number"));
     EXPECT_THAT(refusal_of([](auto& motion) { motion.shape = 0; }), HasSubstr("kind"));
-    EXPECT_THAT(refusal_of([](auto& motion) { motion.purpose = 7; }), HasSubstr("kind"));
+    EXPECT_THAT(refusal_of([](auto& motion) { motion.purpose = 8; }), HasSubstr("kind"));
     EXPECT_THAT(
         refusal_of([](auto& motion) { motion.to[1] = std::numeric_limits<double>::quiet_NaN(); }),
         HasSubstr("not a number"));
@@ -649,6 +667,15 @@ TEST_F(GuardedMachine, RefusesAFeedWithTheSpindleReversed) {
     EXPECT_EQ(permitted(), 2U);
 }
 
+TEST_F(GuardedMachine, RefusesAFeedWithASpindleThatIsOnAtNoSpeed) {
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -2);
+    machine_.next.speed = 0.0;
+    machine_.line(0, 0, -2);
+    EXPECT_EQ(permitted(), 2U);
+    EXPECT_THAT(told_.back(), HasSubstr("spindle"));
+}
+
 TEST_F(GuardedMachine, ChecksTapsAsAWhole) {
     machine_.rapid(53, 0, 50);
     const auto tap = [&](double x, double z) {
@@ -681,6 +708,22 @@ TEST_F(GuardedMachine, ChecksAProbeBeyondItsContact) {
     machine_.line(120, 0, -5, FEELER_PROBE); // behind the stock is the clamp
     EXPECT_EQ(permitted(), back);
     EXPECT_THAT(told_.back(), HasSubstr("clamp"));
+}
+
+/// Such a motion does not end where it goes deeper into the stock.
+TEST_F(GuardedMachine, LetsAProbeLeaveItsContactOnlyOutOfTheStock) {
+    machine_.next.turns_on = 0;
+    machine_.rapid(-80, 0, 40);
+    machine_.rapid(-80, 0, -5);
+    const uint64_t probe = machine_.line(-40, 0, -5, FEELER_PROBE);
+    EXPECT_EQ(permitted(), probe);
+    machine_.abort(probe, -55, 0, -5); // it has touched
+    const uint64_t back = machine_.line(-58, 0, -5, FEELER_PROBE_AWAY);
+    EXPECT_EQ(permitted(), back);
+    machine_.abort(back, -55.1, 0, -5);
+    machine_.line(-40, 0, -5, FEELER_PROBE_AWAY);
+    EXPECT_EQ(permitted(), back);
+    EXPECT_THAT(told_.back(), HasSubstr("stock"));
 }
 
 /// What was refused is not permitted by a guard that is started after that.
@@ -949,6 +992,8 @@ TEST(PermitTimes, TellsQuantiles) {
 TEST(LiveControl, ComparesOffsetsAndLengths) {
     const app::SetupFile setup = setup_of(setup_text);
     app::ControlState control{.origin = {0, 0, -200}};
+    EXPECT_THAT(app::difference(setup, control, 1.0, 0.01), HasSubstr("not homed"));
+    control.is_homed = true;
     EXPECT_EQ(app::difference(setup, control, 1.0, 0.01), "");
     control.origin[0] = 0.009;
     EXPECT_EQ(app::difference(setup, control, 1.0, 0.01), "");
@@ -975,17 +1020,19 @@ TEST(LiveControl, ComparesOffsetsAndLengths) {
 
 TEST(LiveControl, ReadsTheStatus) {
     const auto state = app::read_control_state(
-        R"({"work_offset": 3, "origin": [1, 2, 3, 4, 5, 6, 7, 8, 9], "rotation": 0.5, "tool": 4, "tool_length": 80.25})");
+        R"({"work_offset": 3, "origin": [1, 2, 3, 4, 5, 6, 7, 8, 9], "rotation": 0.5, "tool": 4, "tool_length": 80.25, "homed": true})");
     ASSERT_TRUE(state.has_value());
     EXPECT_EQ(state->work_offset, 3);
     EXPECT_EQ(state->origin[8], 9.0);
     EXPECT_EQ(state->tool, 4);
     EXPECT_EQ(state->tool_length, 80.25);
+    EXPECT_TRUE(state->is_homed);
     for (
         const char* const bad :
         {"", "{}", "[1]", "{\"work_offset\": 1}",
-         R"({"work_offset": 1, "origin": [1], "rotation": 0, "tool": 4, "tool_length": 1})",
-         R"({"work_offset": "a", "origin": [1,2,3,4,5,6,7,8,9], "rotation": 0, "tool": 4, "tool_length": 1})"})
+         R"({"work_offset": 1, "origin": [1], "rotation": 0, "tool": 4, "tool_length": 1, "homed": true})",
+         R"({"work_offset": 1, "origin": [1,2,3,4,5,6,7,8,9], "rotation": 0, "tool": 4, "tool_length": 1})",
+         R"({"work_offset": "a", "origin": [1,2,3,4,5,6,7,8,9], "rotation": 0, "tool": 4, "tool_length": 1, "homed": true})"})
         EXPECT_FALSE(app::read_control_state(bad).has_value()) << bad;
 }
 

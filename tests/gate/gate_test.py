@@ -441,6 +441,19 @@ def follows_a_cancelled_jog():
         assert near(rig.position(), (50, 0, 15), 0.05), rig.position()
 
 
+def follows_a_jog_that_the_board_cancels():
+    with Rig(speed=5) as rig:
+        rig.expect("G21G90G0X100Y0Z40")
+        rig.expect("G0Z5")
+        rig.settle()
+        rig.expect("$J=Y60F1500")
+        until(lambda: rig.position()[1] > 5, "the jog moves")
+        rig.simulator.receive(b"!")  # a button
+        rig.settle()
+        assert 5 < rig.position()[1] < 55, rig.position()
+        rig.refused("$J=X0F1500", "clamp", "does not pass")
+
+
 def passes_what_acts_at_once():
     """Also while a check takes long."""
     with Rig(setup=BODIES.replace("mesh_size = 0.5", "mesh_size = 0.1") + TOOL_1, speed=1,

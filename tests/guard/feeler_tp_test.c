@@ -160,6 +160,7 @@ static void start(void) {
     config.arcBlendTangentKinkRatio = 0.1;
     motion.net_feed_scale = 1.0;
     motion.spindle_status[0].at_speed = 1;
+    motion.spindle_status[0].net_scale = 1.0;
     tpMotFunctions(set_output, set_analog, unlock, is_unlocked, velocity_limit,
                    acceleration_limit);
     tpMotData(&motion, &config);
@@ -477,6 +478,29 @@ static void tells_how_the_spindle_turns(void) {
     motion.spindle_status[0].speed = 0.0;
     add_line(30, 0, 0);
     EXPECT(last_segment()->turns_on == 1);
+    motion.spindle_status[0].speed = 800.0;
+    motion.spindle_status[0].net_scale = 0.5; /* overridden */
+    add_line(40, 0, 0);
+    EXPECT(last_segment()->speed == 400.0);
+}
+
+/* LinuxCNC says of which kind a probe is only after it was queued. */
+static void tells_which_way_a_probe_goes(void) {
+    for (int away = 0; away <= 1; ++away) {
+        uint64_t const before = ring->written;
+        tpSetId(&tp, ++line_number);
+        EXPECT(tpAddLine(&tp, at(10 + away, 0, 0), FEELER_PROBE, 5.0, 100.0, 1000.0, 0xff, 0, -1, tag) == 0);
+        EXPECT(ring->written == before);
+        motion.probe_type = away ? 3 : 1;
+        cycle(1);
+        EXPECT(ring->written == before + 1);
+        EXPECT(last_segment()->purpose == (away ? FEELER_PROBE_AWAY : FEELER_PROBE));
+    }
+    /* Nothing of it is lost if it is dropped at once. */
+    tpSetId(&tp, ++line_number);
+    tpAddLine(&tp, at(20, 0, 0), FEELER_PROBE, 5.0, 100.0, 1000.0, 0xff, 0, -1, tag);
+    tpAbort(&tp);
+    EXPECT(ring->dropped == ring->written && last_segment()->to[0] == 20.0);
 }
 
 static void runs_only_forwards(void) {
@@ -738,6 +762,7 @@ int main(int count, char **words) {
         CASE(limits_the_rounding_of_feeds),
         CASE(tells_what_begins_at_rest),
         CASE(tells_how_the_spindle_turns),
+        CASE(tells_which_way_a_probe_goes),
         CASE(runs_only_forwards),
         CASE(is_full_before_the_ring_is),
         CASE(asks_the_kinematics),

@@ -47,14 +47,15 @@
 /* Shape of a path. A tap moves to `to` and back to `from`. */
 enum feeler_shape { FEELER_LINE = 1, FEELER_ARC = 2, FEELER_TAP = 3 };
 
-/* What a motion is for: LinuxCNC's own numbers. */
+/* What a motion is for: LinuxCNC's own numbers, and one for probing until the contact is lost. */
 enum feeler_purpose {
     FEELER_RAPID = 1,
     FEELER_FEED = 2,
     FEELER_CURVE = 3,
     FEELER_TOOL_CHANGE = 4,
     FEELER_PROBE = 5,
-    FEELER_INDEXER = 6
+    FEELER_INDEXER = 6,
+    FEELER_PROBE_AWAY = 7
 };
 
 /* How a motion may pass into the next one. */
@@ -72,7 +73,7 @@ struct feeler_segment {
     int32_t offset;        /* work offset in use: 540 for G54, 593 for G59.3 */
     int32_t turns;         /* of an arc: full turns before its end; negative: clockwise */
     uint32_t turns_on;     /* the spindle: 0 does not turn, 1 clockwise, 2 counterclockwise */
-    double speed;          /* of the spindle, as commanded, 1/min */
+    double speed;          /* of the spindle, as commanded and overridden, 1/min */
     double feed;           /* as programmed, units per second */
     double tolerance;      /* of a blend; 0: none, as between rapids of a program that states none */
     double from[9], to[9];

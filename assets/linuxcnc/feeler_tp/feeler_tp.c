@@ -142,6 +142,8 @@ static __typeof__(&kinematicsInverse) kinematics; /* of the machine; NULL: not f
 
 static TP_STRUCT *the_tp; /* the one planner that there is */
 static EmcPose goal;      /* the end of the last motion that was accepted */
+static uint64_t accepted; /* number of the last motion; the guard does not know a new probe yet */
+static int is_probe_new;
 static int next_id, term_cond = TC_TERM_COND_PARABOLIC; /* as after tpInit */
 static double tolerance;
 static int is_aborting;
@@ -320,24 +322,34 @@ static void note_stop(TP_STRUCT *tp, int was_busy, uint64_t motion) {
 
 static int is_full(void) {
     return call_count > CALLS - CALLS_IN_RESERVE
-           || ring->written - feeler_load(&ring->read) >= FEELER_RING_SEGMENTS - CALLS_IN_RESERVE;
+           || accepted - feeler_load(&ring->read) >= FEELER_RING_SEGMENTS - CALLS_IN_RESERVE;
 }
 
 static struct feeler_segment *next_segment(void) {
-    uint64_t const number = ring->written + 1;
+    uint64_t const number = accepted + 1;
     if (number - feeler_load(&ring->read) > FEELER_RING_SEGMENTS) return NULL;
     return &ring->segment[number % FEELER_RING_SEGMENTS];
 }
 
+/* Shows a probing motion to the guard. LinuxCNC says of which kind it is only after it was queued. */
+static void show_probe(void) {
+    if (!is_probe_new) return;
+    is_probe_new = 0;
+    if (status->probe_type & 2)
+        ring->segment[accepted % FEELER_RING_SEGMENTS].purpose = FEELER_PROBE_AWAY;
+    feeler_store(&ring->written, accepted);
+}
+
 /* Gives a motion its number and shows it to the guard. */
 static int accept_motion(struct call *c, enum feeler_shape shape) {
+    show_probe();
     struct feeler_segment *s = next_segment();
     if (!s) {
         --call_count;
         return TP_ERR_FAIL;
     }
     memset(s, 0, sizeof *s);
-    s->number = c->number = ring->written + 1;
+    s->number = c->number = accepted + 1;
     s->follows = was_dropped ? last_begun : c->number - 1;
     if (was_dropped && was_stopped) {
         s->follows_part = 1;
@@ -356,7 +368,8 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     /* LinuxCNC starts and stops the spindle only once all motions before that were made. */
     if (status) {
         int const direction = status->spindle_status[0].direction;
-        double const speed = status->spindle_status[0].speed;
+        double const speed =
+            status->spindle_status[0].speed * status->spindle_status[0].net_scale;
         s->turns_on = direction > 0 ? 1 : direction < 0 ? 2 : 0;
         s->speed = speed < 0.0 ? -speed : speed;
     }
@@ -387,7 +400,11 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
     c->tag.packed_flags |= (unsigned long)(uint32_t)c->number << NUMBER_SHIFT;
     if (shape != FEELER_TAP) goal = c->end; /* a tap ends where it begins */
     ++motion_count;
-    feeler_store(&ring->written, c->number);
+    accepted = c->number;
+    if (c->type == FEELER_PROBE && status)
+        is_probe_new = 1;
+    else
+        feeler_store(&ring->written, accepted);
     return TP_ERR_OK;
 }
 
@@ -473,7 +490,8 @@ static void drop_calls(TP_STRUCT *tp) {
     if (motion_count > 0) real_tpSetSpindleSync(tp, 0, 0.0, 0);
     call_count = motion_count = 0;
     was_dropped = 1;
-    feeler_store(&ring->dropped, ring->written);
+    show_probe();
+    feeler_store(&ring->dropped, accepted);
 }
 
 /* Stops, and lets LinuxCNC end the program, whose next motion would start elsewhere. */
@@ -502,7 +520,7 @@ static uint64_t last_permitted(void) {
     uint64_t const permitted = feeler_permitted_number(permit);
     /* Permits of another session, or for motions that do not exist, are none. */
     int const is_valid = permit == feeler_permit(ring->session, permitted)
-                         && permitted <= ring->written && !has_external_offset();
+                         && permitted <= accepted && !has_external_offset();
     return is_valid ? permitted : 0;
 }
 
@@ -547,6 +565,7 @@ static void show_state(TP_STRUCT *tp) {
 }
 
 int tpRunCycle(TP_STRUCT *const tp, long period) {
+    show_probe();
     int const has_motions = motion_count > 0 || !real_tpIsDone(tp);
     if (has_motions && !is_aborting && have_kinematics_changed()) end_program_at_change(tp);
     if (!is_aborting) release_permitted(tp);
