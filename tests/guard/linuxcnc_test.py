@@ -415,6 +415,33 @@ def compares_the_set_up(m):
     m.wait_told("G54 X")
     expect(is_at(m.wait_at_rest(), X=10.0), "it moves after touching off elsewhere")
     m.abort()
+    m.mdi("G10 L20 P1 X10")
+    m.wait_at_rest()
+
+    def holds(text, x):
+        """At X, a motion is held as long as something is not as it should be; then it is aborted."""
+        m.messages.clear()
+        m.mdi("G0 X20")
+        m.wait_told(text)
+        expect(is_at(m.wait_at_rest(), X=x), f"it moves although {text}")
+        m.abort()
+
+    write(m.folder + "/mill.toml", SETUP + "# edited\n")
+    holds("set-up file has changed", 10.0)
+    write(m.folder + "/mill.toml", SETUP)
+    subprocess.run(["halcmd", "unlinkp", "feeler-tp.tool-number"], check=True)
+    set_pin("feeler-tp.tool-number", "2")
+    holds("LinuxCNC has tool 1", 10.0)
+    set_pin("feeler-tp.tool-number", "1")
+    m.mdi("G0 X12")
+    expect(is_at(m.wait_at_rest(), X=12.0), "it moves when all is as it should be")
+    m.command.mode(m.api.MODE_MANUAL)
+    m.command.wait_complete()
+    m.command.teleop_enable(0)
+    m.command.wait_complete()
+    m.command.unhome(-1)
+    m.wait(lambda s: not any(s.homed[: s.joints]), "it is not homed")
+    holds("not homed", 12.0)
     m.stop_guard()
 
 
@@ -459,11 +486,20 @@ def taps_probes_and_threads(m):
     """Motions that cannot be stopped on their way are permitted as a whole."""
     write(
         m.folder + "/a.ngc",
-        HEAD + "G0 X90 Y0 Z10\nG38.3 Z5 F100\nG0 Z10\nS60 M3\nG33.1 Z8 K1\nG33 Z6 K0.5\nG0 Z12\nM2\n",
+        HEAD + "G0 X90 Y0 Z10\nG38.3 Z5 F100\nG38.5 Z10\nG0 Z10\nS60 M3\nG33.1 Z8 K1\nG33 Z6 K0.5\nG0 Z12\nM2\n",
     )
     m.start_guard()
     m.run_to_end("a.ngc")
     expect(is_at(m.status.position, X=90.0, Z=-88.0), f"it ends at {m.status.position[:3]}")
+    for code in ("M5", "G0 Z60", "G0 X0", "G0 Z0.5"):
+        m.mdi(code)
+        m.wait_at_rest()
+    set_pin("motion.probe-input", "1")  # it is bent and stays in contact
+    m.mdi("G38.5 Z3 F200")
+    expect(is_at(m.wait_at_rest(), Z=-97.0), "a probe may go out of the stock")
+    m.mdi("G38.5 Z-5 F200")
+    m.wait_told("Feeler stops")
+    expect(m.told("stock") and is_at(m.wait_at_rest(), Z=-97.0), "it goes deeper into the stock")
     m.stop_guard()
 
 
