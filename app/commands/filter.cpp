@@ -20,12 +20,15 @@
 #include "app/commands/commands.h"
 #include "app/commands/output.h"
 #include "app/commands/progress.h"
+#include "app/commands/setup_control.h"
 #include "app/commands/suggestion.h"
 #include "app/guard/program_filter.h"
 #include "app/guard/shell.h"
 #include "app/library/store/database.h"
 #include "app/library/store/result_key.h"
 #include "app/library/store/result_store.h"
+#include "app/setup/control/offset_differences.h"
+#include "app/setup/ini_file.h"
 #include "app/setup/setup_file.h"
 #include "core/base/file_reads.h"
 #include "core/base/platform.h"
@@ -201,6 +204,19 @@ core::Result<ExitCode> pass_on(const FilteredProgram& program, const ProgramResu
     return ExitCode::clear;
 }
 
+/// How the work offsets that the program uses differ from those that LinuxCNC has stored, for the
+/// operator; empty if they do not.
+core::Result<std::string> offsets_elsewhere(const CheckJob& job) {
+    std::string stored = job.settings.parameters;
+    if (stored.empty() && !job.settings.ini.empty()) {
+        FEELER_TRY(IniFile ini, read_ini(job.settings.ini));
+        stored = std::move(ini.parameters);
+    }
+    if (stored.empty()) return std::string();
+    FEELER_TRY(const OffsetComparison compared, comparison_of(job, {stored}));
+    return text_of_other_offsets(compared);
+}
+
 core::Result<ExitCode> filter_program(const FilterOptions& options) {
     const std::string& original = options.check.what.program;
     FEELER_TRY(const FilteredProgram program,
@@ -222,11 +238,16 @@ core::Result<ExitCode> filter_program(const FilterOptions& options) {
         return tl::unexpected(std::move(error));
     }
     const bool passes = may_load(*result);
+    if (passes && has_other_offsets(*result)) {
+        FEELER_TRY(const std::string text, offsets_elsewhere(job));
+        std::fputs(printable(text).c_str(), stderr);
+        if (!text.empty()) return ExitCode::findings;
+    }
     const ProgramResult shown = with_own_path(*result, program.path, original);
     const std::string text = passes ? passing_text(shown) : refusal_text(shown);
     std::fputs(printable(text).c_str(), stderr);
     if (passes) return pass_on(program, *result, original);
-    return status_of(*result) > 1 ? ExitCode::failed : ExitCode::findings;
+    return status_of(*result) == 1 ? ExitCode::findings : ExitCode::failed;
 }
 
 ExitCode filter(const FilterOptions& options) {

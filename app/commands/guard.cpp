@@ -220,6 +220,7 @@ private:
 
     std::string objection(const feeler_segment& motion);
     bool has_status();
+    void look_at_setup();
     void write_log();
     void tell(const std::string& text);
 
@@ -231,6 +232,7 @@ private:
     std::optional<MotionLog> log_;
     std::optional<std::string> setup_text_; // as it was read
     bool setup_has_changed_ = false;
+    int64_t setup_seen_ = 0; // milliseconds
     double unit_ = 1.0;
     bool was_idle_ = true, said_disk_ = false;
     feeler_segment asked_for_{}; // the motion for which the status was asked for anew
@@ -278,11 +280,12 @@ std::string GuardRun::objection(const feeler_segment& motion) {
     if (was_idle_ || motion.tool != asked_for_.tool || motion.offset != asked_for_.offset) {
         was_idle_ = false;
         asked_for_ = motion;
-        setup_has_changed_ = core::file_bytes(options_.setup) != setup_text_;
+        look_at_setup();
         status_.ask_anew();
     }
     status_.ask_again();
     if (!status_.is_fresh() || !status_.state()) return awaits_status;
+    if (setup_has_changed_) look_at_setup();
     if (setup_has_changed_)
         return "The set-up file has changed since the guard has read it: start the guard again.";
     if (motion.tool != status_.state()->tool)
@@ -290,6 +293,15 @@ std::string GuardRun::objection(const feeler_segment& motion) {
             "LinuxCNC has tool {} in the spindle, and feeler-tp.tool-number says {}.",
             status_.state()->tool, motion.tool);
     return difference(setup_, *status_.state(), unit_, options_.tolerance);
+}
+
+/// Whether the set-up file was edited; looks at most ten times a second.
+void GuardRun::look_at_setup() {
+    constexpr int64_t interval = 100; // milliseconds
+    const int64_t now = core::platform::steady_milliseconds();
+    if (now - setup_seen_ < interval) return;
+    setup_seen_ = now;
+    setup_has_changed_ = core::file_bytes(options_.setup) != setup_text_;
 }
 
 void GuardRun::write_log() {

@@ -202,8 +202,10 @@ core::Result<void> GateServer::open_controller(const GatePorts& ports) {
     if (!error) port.set_option(Option::flow_control(Option::flow_control::none), error);
 #ifndef _WIN32
     // Otherwise another program could open the port, too, and move the machine. Windows has no
-    // other way.
-    if (!error && ::ioctl(port.native_handle(), TIOCEXCL) != 0)
+    // other way. A pseudoterminal would keep the flag when the gate has ended.
+    const char* const terminal = error ? nullptr : ::ttyname(port.native_handle());
+    const bool is_real = terminal && !std::string_view(terminal).starts_with("/dev/pts/");
+    if (is_real && ::ioctl(port.native_handle(), TIOCEXCL) != 0)
         error = std::error_code(errno, std::generic_category());
 #endif
     if (error) return not_open(name, error);

@@ -11,7 +11,9 @@
 #include "app/check/check_job.h"
 #include "app/check/check_run.h"
 #include "app/library/store/result_store.h"
+#include "app/setup/control/offset_differences.h"
 #include "app/setup/setup_file.h"
+#include "gcode/language/canonical.h"
 
 namespace app {
 namespace {
@@ -56,20 +58,31 @@ core::Result<ProgramResult> filter_result(const CheckJob& job, ResultStore* stor
     return result;
 }
 
-namespace {
+bool may_load(const ProgramResult& result) { return status_of(result) == 0; }
 
-/// The assumption that a work offset is another one than on the control; empty if there is none.
-std::string_view offset_difference(const ProgramResult& result) {
-    const auto found = std::find_if(
+bool has_other_offsets(const ProgramResult& result) {
+    return std::any_of(
         result.assumptions.begin(), result.assumptions.end(),
         [](const std::string& assumption) { return assumption.ends_with(differs_from_variables); });
-    return found == result.assumptions.end() ? std::string_view() : std::string_view(*found);
 }
 
-} // namespace
-
-bool may_load(const ProgramResult& result) {
-    return status_of(result) == 0 && offset_difference(result).empty();
+std::string text_of_other_offsets(const OffsetComparison& compared) {
+    constexpr double tolerance = 0.01; // mm or degrees
+    std::string text;
+    for (const ComparedOffset& value : compared.values) {
+        const auto index = gcode::offset_of_name(value.work_offset);
+        if (!index || !compared.used.contains(*index) || !value.setup || !value.control) continue;
+        if (std::abs(*value.setup - *value.control) <= tolerance) continue;
+        text += fmt::format("{} is {:.4f} in LinuxCNC and {:.4f} in the set-up ({}).\n", value.name,
+                            *value.control, *value.setup, value.is_angle ? "degrees" : "mm");
+    }
+    if (text.empty()) return text;
+    return text
+           + wrapped("So the check is not about the place where LinuxCNC would run the program. "
+                     "State the offset as it is, or leave it out of the set-up: then LinuxCNC's "
+                     "counts, and the program must be loaded again after touching off.",
+                     0, 2)
+           + "\n" + not_loaded;
 }
 
 std::string refusal_text(const ProgramResult& result) {
@@ -80,14 +93,6 @@ std::string refusal_text(const ProgramResult& result) {
     for (const StoredFinding& finding : result.findings)
         if (finding.severity == core::Severity::error && errors++ < most)
             text += "\n" + finding_words(finding);
-    if (const std::string_view differing = offset_difference(result); !differing.empty())
-        text += "\n"
-                + wrapped(fmt::format("{}. So the check is not about the place where the control "
-                                      "would run the program. State the offset as it is, or leave "
-                                      "it out of the set-up: then that of the control counts, and "
-                                      "the program must be loaded again after touching off.",
-                                      differing),
-                          0, 2);
     if (errors > most)
         text +=
             fmt::format("\n{} in all; \"feeler check\" lists them.\n", counted(errors, "error"));

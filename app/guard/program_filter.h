@@ -11,6 +11,7 @@
 namespace app {
 
 struct CheckJob;
+struct OffsetComparison;
 class ResultStore;
 
 /// The progress of a filter as LinuxCNC's windows read it: lines FILTER_PROGRESS=37 on standard
@@ -35,6 +36,12 @@ core::Result<ProgramResult> filter_result(const CheckJob& job, ResultStore* stor
 
 /// Whether the control may load a program with this result: it was run to its end without an error.
 bool may_load(const ProgramResult& result);
+
+/// Whether the set-up states a work offset otherwise than the control's variables file.
+bool has_other_offsets(const ProgramResult& result);
+
+/// Which of these the program uses, with both values, and what to do; empty if there is none.
+std::string text_of_other_offsets(const OffsetComparison& compared);
 
 /// The end of what an operator is told of a program that the control must not load.
 inline constexpr const char* not_loaded =

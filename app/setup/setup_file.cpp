@@ -329,7 +329,10 @@ void read_offsets(TableReader& table, SetupFile& file) {
         const gcode::AxisValues of_variables = std::exchange(origin, {});
         for (size_t axis = 0; axis < core::axis_count; ++axis)
             origin[axis] = offset->number_or(axis_keys[axis], measure_along(axis), 0.0);
-        if (of_variables != gcode::AxisValues{} && of_variables != origin)
+        // A variables file that has others has this one, too; it may be 0.
+        const bool is_stored =
+            of_variables != gcode::AxisValues{} || !file.environment.parameters.empty();
+        if (is_stored && of_variables != origin)
             file.assumptions.push_back(fmt::format("{}{}", name, differs_from_variables));
         offset->finish();
         if (!file.offsets_set.insert(static_cast<int>(*index)).second)

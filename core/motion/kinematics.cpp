@@ -433,10 +433,29 @@ void add_play(RelativeLeg& leg, const Play& play) {
     leg.positions = std::move(positions);
 }
 
+namespace {
+
+/// A body can be swept over so many positions. A box contains the hull of more.
+void limit_positions(std::vector<Vec3>& positions) {
+    if (positions.size() <= ConvexShape::max_positions) return;
+    Vec3 low = positions.front(), high = low;
+    for (const Vec3& position : positions) {
+        low = glm::min(low, position);
+        high = glm::max(high, position);
+    }
+    positions.clear();
+    for (const double x : {low.x, high.x})
+        for (const double y : {low.y, high.y})
+            for (const double z : {low.z, high.z}) positions.push_back({x, y, z});
+}
+
+} // namespace
+
 RelativeLeg relative_leg(const Machine& machine, const Mount& target, const Mover& mover,
                          const Leg& leg) {
-    if (mover.play.none()) return rigid_leg(machine, target, mover, leg);
     RelativeLeg relative = rigid_leg(machine, target, mover, leg);
+    limit_positions(relative.positions);
+    if (mover.play.none()) return relative;
     add_play(relative, rotated(relative.orientation, mover.play));
     if (!relative.turns) return relative;
     // The body, and with it the displacement, turns by half of the leg's angle to either side.

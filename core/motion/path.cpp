@@ -5,7 +5,6 @@
 
 #include "core/base/math.h"
 #include "core/base/units.h"
-#include "core/geom/gjk.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/machine.h"
 #include "core/motion/timing.h"
@@ -451,14 +450,6 @@ Path path_of(const Motion& motion, const AxisSpread& from, const AxisSpread& to,
         // A dog leg leaves the hull of its ends, but not their box.
         if (is_dogleg(motion, machine)) hull.positions = corners_around(hull.positions);
         legs.push_back(std::move(hull));
-    }
-    for (Leg& hull : legs) {
-        // Bodies can be swept over so many positions.
-        if (hull.positions.size() > ConvexShape::max_positions)
-            hull.positions = corners_around(hull.positions);
-        if (hull.positions.size() <= ConvexShape::max_positions) continue;
-        path.legs.clear();
-        return path;
     }
     if (from.none()) legs.front().certain.push_back(values_of(motion.from));
     if (to.none()) legs.back().certain.push_back(values_of(motion.to));

@@ -157,6 +157,26 @@ TEST_F(Filter, TakesTheIniFileOfLinuxCnc) {
     EXPECT_THAT(ran.err, HasSubstr("over-travel"));
 }
 
+/// Those that the program uses, by more than a hundredth.
+TEST_F(Filter, RefusesAProgramForAnotherWorkOffset) {
+    folder_.write("mill.ini", "[RS274NGC]\nPARAMETER_FILE = sim.var\n[TRAJ]\nLINEAR_UNITS = mm\n");
+    std::string text = setup_text;
+    folder_.write("mill.toml", text.replace(text.find("[stock]"), 0, "G55 = { X = 5 }\n"));
+    const auto status_with = [&](const std::string& stored) {
+        folder_.write("sim.var", stored);
+        return filter(harmless_, {"--ini", folder_ / "mill.ini"});
+    };
+    EXPECT_EQ(status_with("5221 0\n5222 0.005\n5223 0\n5241 7\n").status, 0);
+    const Ran other = status_with("5221 0\n5222 0\n5223 0.5\n5241 5\n");
+    EXPECT_EQ(other.status, 1);
+    EXPECT_EQ(other.out, "");
+    EXPECT_THAT(other.err, AllOf(HasSubstr("G54 Z is 0.5000 in LinuxCNC and 0.0000 in the set-up"),
+                                 HasSubstr("not loaded"), Not(HasSubstr("G55"))));
+    // One that was never set is 0.
+    folder_.write("mill.toml", text.replace(text.find("Z = 0 }"), 7, "Z = 2 }"));
+    EXPECT_EQ(status_with("5220 1\n5221 0\n5222 0\n5223 0\n").status, 1);
+}
+
 TEST(FilterProgress, RisesInStepsThatAWindowCanFollow) {
     app::FilterProgress progress;
     app::FilterProgress::Clock::time_point now{};

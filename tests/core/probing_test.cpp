@@ -141,6 +141,36 @@ TEST(Probing, LeavesAContactOnlyOutOfTheStock) {
     EXPECT_EQ(shop.move(down).verdict, Verdict::collision);
 }
 
+/// The way to its end counts, also from a range along another axis.
+TEST(Probing, LeavesAContactWithoutRunningIntoAFixture) {
+    core::Setup setup = plate();
+    setup.fixtures.push_back(block_of({{160, 40, -30}, {180, 60, 60}}));
+    for (const bool has_probed : {false, true}) {
+        Shop shop(setup, {130, 50, 20});
+        if (has_probed) shop.move(probe({130, 50, 10}));
+        Move away = probe({200, 50, has_probed ? 10.0 : 20.0}, 0);
+        away.leaves = true;
+        EXPECT_NE(shop.move(away).verdict, Verdict::clear) << has_probed;
+    }
+}
+
+/// At a corner, both motions are one hull.
+TEST(Probing, RoundsCornersBetweenRanges) {
+    const core::Setup setup = plate();
+    for (const MotionKind kind : {MotionKind::rapid, MotionKind::feed}) {
+        Shop shop(setup, {110, 50, 50});
+        PathModeChange mode;
+        mode.blending = Blending::continuous;
+        mode.tolerance = 0.5;
+        mode.rapids_keep_speed = true;
+        shop.give(mode);
+        shop.move(probe({120, 60, 20}));
+        EXPECT_EQ(shop.move({kind, {120, 60, 30}, 0}).verdict, Verdict::clear);
+        EXPECT_EQ(shop.move({kind, {140, 60, 31}, 0}).verdict, Verdict::clear);
+        EXPECT_NE(shop.move({kind, {50, 60, -2}, 0}).verdict, Verdict::clear);
+    }
+}
+
 /// The positions along three axes are the corners of a box, twice.
 TEST(Probing, FollowsARangeAlongThreeAxes) {
     for (const double x : {150.0, 200.0}) {

@@ -234,6 +234,7 @@ OffsetComparison differences(const SetupFile& setup, const ControlOffsets& contr
                              const UsedOffsets& used) {
     OffsetComparison compared = Comparison(setup, control, used).result();
     compared.stopped = used.stopped;
+    compared.used = used.work;
     return compared;
 }
 

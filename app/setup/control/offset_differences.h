@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,7 @@ struct OffsetComparison {
     gcode::LengthUnit unit = gcode::LengthUnit::mm; // of the set-up, for texts; all values are mm
     std::vector<ComparedOffset> values;             // work offsets, then lengths, then diameters
     std::vector<std::string> notes;                 // for the user
+    std::set<size_t> used{};                        // work offsets that the program uses, by index
     // Why the program was not read to its end: what it uses after that is not compared.
     std::optional<core::Error> stopped{};
 

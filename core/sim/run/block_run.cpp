@@ -148,6 +148,7 @@ bool shifts_in_the_hole(std::span<const Event> events) {
 
 BlockMove BlockRun::move_of(const PairClearance& pair) const {
     BlockMove move{result.motion, turns, result.duration};
+    move.leaves_contact = leaves_contact;
     for (const WorstMotion& one : worst_motions)
         if (one.pair == pair.pair) move.only_dog_leg = one.only_dog_leg;
     if (move.motion != BlockMotion::cycle) return move;

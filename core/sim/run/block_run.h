@@ -34,6 +34,7 @@ struct BlockRun {
     bool turns = false;                 // whether rotary axes move
     bool pushes_centre = false;         // the non-cutting centre is pushed down into the stock
     bool drills_sideways = false;
+    bool leaves_contact = false;  // a probing move that ends when its contact is lost
     bool is_uncertain = false;    // a motion is a probing move, or starts where one ended
     double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
     double off_path_rapids = 0.0; // likewise of its rapids

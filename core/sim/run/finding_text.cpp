@@ -22,7 +22,7 @@ std::string rule_of(const PairClearance& pair, const BlockMove& move, bool spind
     if (pair.verdict == Verdict::violation)
         return rapid && fixture ? rule_id("rapid-near-clamp") : rule_id("near-miss");
     if (!fixture && rapid) return rule_id("rapid-in-stock");
-    if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs)
+    if (!fixture && pair.pair.part == PartKind::flutes && !spindle_runs && !move.leaves_contact)
         return rule_id("spindle-off");
     return pair.pair.part == PartKind::holder || pair.pair.part == PartKind::nose
                ? rule_id("holder-into-wall")

@@ -19,7 +19,8 @@ struct BlockMove {
     double duration = 0.0;     // seconds
     bool only_dog_leg = false; // the rapid would be clear if it were straight
     MoveWithin within = MoveWithin::nothing;
-    bool shifts = false; // a cycle that shifts the tool sideways in the hole, such as G76
+    bool leaves_contact = false; // by probing (G38.4)
+    bool shifts = false;         // a cycle that shifts the tool sideways in the hole, such as G76
 };
 
 /// When in a block something happens, after a fraction of its duration.

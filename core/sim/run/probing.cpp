@@ -115,19 +115,17 @@ void BlockRun::check_leaving(const Path& path, const AxisSpread& before, Tracked
     constexpr double deflection = 1.0; // mm: of a probe in contact
     LegCheck check = leg_check(FluteUse::not_cutting);
     for (const Leg& whole : path.legs) {
-        double contact = 0.0; // fraction of the leg
-        if (whole.straight) {
-            double start = deflection;
-            for (size_t i = 0; i < axis_count; ++i) start += before.below[i] + before.above[i];
-            contact = std::min(1.0, start / std::max(length_of(whole), 0.001));
+        if (!whole.straight) { // undecided if they may be in contact anywhere
+            check.run(whole, result.duration, state.stock, found);
+            continue;
         }
-        if (contact > 0.0) {
-            TrackedPairs first;
-            check.run(stretch(whole, 0.0, contact), result.duration, state.stock, first);
-            first.remove_if(
-                [](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
-            for (const TrackedPair& pair : first) merge(entry(found, pair.pair, setup), pair);
-        }
+        double start = deflection;
+        for (size_t i = 0; i < axis_count; ++i) start += before.below[i] + before.above[i];
+        const double contact = std::min(1.0, start / std::max(length_of(whole), 0.001));
+        TrackedPairs first;
+        check.run(stretch(whole, 0.0, contact), result.duration, state.stock, first);
+        first.remove_if([](const TrackedPair& pair) { return pair.pair.part == PartKind::flutes; });
+        for (const TrackedPair& pair : first) merge(entry(found, pair.pair, setup), pair);
         if (contact < 1.0)
             check.run(stretch(whole, contact, 1.0), result.duration, state.stock, found);
     }
@@ -136,6 +134,7 @@ void BlockRun::check_leaving(const Path& path, const AxisSpread& before, Tracked
 void BlockRun::check_probing(const Motion& motion, const Path& path, const AxisSpread& before) {
     TrackedPairs here;
     if (motion.leaves_contact) {
+        leaves_contact = true;
         check_leaving(path, before, here);
     } else if (!path.legs[0].straight) {
         LegCheck check = leg_check(FluteUse::not_cutting);
