@@ -1081,7 +1081,7 @@ def run_scenario(name, planner="feeler_tp", keep=None):
             command = ["runuser", "-u", "nobody", "--", "env", "HOME=" + folder] + command
         with open(folder + "/output", "w", encoding="utf-8") as output:
             try:
-                subprocess.run(command, cwd=folder, env=environment, stdout=output, stderr=output, check=False, timeout=5000)  # clock: a test that hangs
+                subprocess.run(command, cwd=folder, env=environment, stdout=output, stderr=output, check=False, timeout=5000 * PATIENCE)  # clock: a test that hangs
             except subprocess.TimeoutExpired:
                 pass
         if keep and os.path.exists(folder + "/samples.txt"):

@@ -77,6 +77,9 @@ Query random_query(std::mt19937& rng, const Kind& kind, const Scene& scene) {
         query.segment.end[axis] *= kind.grid;
     }
     if (rng() % 50 == 0) query.segment.start[rng() % 3] = greatest_coordinate;
+    // Some lines have epoch 2.
+    if (rng() % 4 == 0) query.tool_epoch = 2;
+    if (rng() % 4 == 0) query.work_epoch = 2;
     const auto near = static_cast<uint32_t>(rng() % static_cast<uint32_t>(kind.reach));
     query.limit = rng() % 2 ? beyond_all_squares : squared_limit(near);
     return query;
@@ -94,7 +97,8 @@ public:
         config_.memory_latency = 1 + static_cast<uint32_t>(rng_() % 40);
         config_.cycles_per_line = 1 + static_cast<uint32_t>(rng_() % 3);
         config_.memory_lines = static_cast<uint32_t>(scene_.memory.size());
-        if (kind.is_faulty && rng_() % 4 == 0) config_.memory_lines /= 4;
+        if (kind.is_faulty && rng_() % 2)
+            config_.memory_lines = 1 + static_cast<uint32_t>(rng_() % config_.memory_lines);
         if (kind.is_faulty) config_.search_limit = 100U << rng_() % 8;
         element_ = search_element(config_);
         memory_ = memory_unit(config_);
