@@ -41,7 +41,7 @@ FAULTS = [
     ("search_element.sv", "!request || granted ?", "!request ?"),
     ("search_element.sv", "response_is_intact && !is_stale[i]", "response_is_intact"),
     ("search_element.sv", "looks && !flush && !reset", "looks && !reset"),
-    ("search_element.sv", "push_place |= stack_sizes[7*i+:6]", "push_place |= {1'b0, stack_sizes[7*i+:5]}"),
+    ("search_element.sv", "push_place |= stack_sizes[7*i+:6]", "push_place |= {2'b0, stack_sizes[7*i+:4]}"),
 ]
 TESTS = ("hwsim_rtl_unit_test", "hwsim_rtl_element_test")
 
