@@ -97,8 +97,8 @@ public:
         config_.memory_latency = 1 + static_cast<uint32_t>(rng_() % 40);
         config_.cycles_per_line = 1 + static_cast<uint32_t>(rng_() % 3);
         config_.memory_lines = static_cast<uint32_t>(scene_.memory.size());
-        if (kind.is_faulty && rng_() % 2)
-            config_.memory_lines = 1 + static_cast<uint32_t>(rng_() % config_.memory_lines);
+        if (kind.is_faulty && rng_() % 4 == 0) config_.memory_lines /= 2;
+        if (kind.is_faulty && rng_() % 4 == 0) config_.memory_lines = scene_.query.work_header;
         if (kind.is_faulty) config_.search_limit = 100U << rng_() % 8;
         element_ = search_element(config_);
         memory_ = memory_unit(config_);
