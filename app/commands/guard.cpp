@@ -288,7 +288,7 @@ std::string GuardRun::objection(const feeler_segment& motion) {
     if (setup_has_changed_) look_at_setup();
     if (setup_has_changed_)
         return "The set-up file has changed since the guard has read it: start the guard again.";
-    if (motion.tool != status_.state()->tool)
+    if (motion.tool >= 0 && motion.tool != status_.state()->tool)
         return fmt::format(
             "LinuxCNC has tool {} in the spindle, and feeler-tp.tool-number says {}.",
             status_.state()->tool, motion.tool);
