@@ -1,5 +1,6 @@
 // A search element of the circuit, held against the emulator's at every clock edge.
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -142,7 +143,7 @@ public:
 
     /// Whether both are in the same state, as far as it can be seen.
     void expect_the_same() {
-        ASSERT_EQ(bool{circuit_.request}, element_.request.valid) << cycle_;
+        ASSERT_EQ(circuit_.request != 0, element_.request.valid) << cycle_;
         if (element_.request.valid) {
             ASSERT_EQ(circuit_.request_thread, element_.request.thread);
             ASSERT_EQ(circuit_.request_address, element_.request.address);
