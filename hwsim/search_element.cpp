@@ -45,15 +45,18 @@ void next_lines(SearchThread& thread) {
     thread.phase = is_last ? Phase::drain : Phase::take_tool;
 }
 
+bool is_last_half(const SearchThread& thread, uint8_t half) {
+    return half == 1 || !thread.halves.there[1];
+}
+
 GapAnswer test_of_half(SearchThread& thread, uint8_t number) {
     const uint8_t half = thread.next_half;
     const SearchPair& pair = thread.halves.pair[half];
     std::array<FixedVec, 2> at = thread.offset;
     if (thread.division == Division::way) at[1 - half] = thread.middle[half];
     const auto gap = squared_gap(pair.tool_volume, at[0], at[1], pair.work_box);
-    const bool is_last = half == 1 || !thread.halves.there[1];
     thread.next_half = 1;
-    if (is_last) thread.phase = Phase::tested;
+    if (is_last_half(thread, half)) thread.phase = Phase::tested;
     return {.valid = true,
             .thread = number,
             .half = half,
@@ -220,8 +223,7 @@ void accept_gap(SearchThread& thread, const GapAnswer& answer, uint32_t stack_de
     if (answer.of_records) return accept_records(thread, answer);
     thread.halves.pair[answer.half].squared = answer.squared;
     thread.in_range[answer.half] = answer.in_range;
-    const bool is_last = answer.half == 1 || !thread.halves.there[1];
-    if (is_last) choose_half(thread, stack_depth);
+    if (is_last_half(thread, answer.half)) choose_half(thread, stack_depth);
 }
 
 void accept_popped(SearchThread& thread) {

@@ -323,7 +323,7 @@ bool Gate::handle_own_command(const LinePointer& line) {
         return true;
     };
     const bool is_command = text.starts_with('$') || text.starts_with('[');
-    if (!is_command) return refuse_it(line->text + " is nothing that Grbl understands.");
+    if (!is_command) return refuse_it("Grbl does not understand " + line->text + ".");
     if (!text.starts_with(own_command))
         return refuse_it(
             line->text
@@ -643,7 +643,7 @@ void Gate::take_facts() {
     facts_.is_lost = std::exchange(may_be_lost_, false) && glm::length(position) < least_travel
                      && (!was_asked_ || has_moved_ || glm::length(was_at_) >= least_travel);
     if (facts_.is_lost) is_homed_ = false;
-    // What it said is of before, if it was homed while it was asked.
+    // If it was homed while it was asked, its answers may be from before the homing.
     const bool is_current = changes_ == changes_asked_for_;
     facts_.was_homed = is_current && std::exchange(was_homed_, false) && was_asked_;
     was_asked_ = true;

@@ -1,9 +1,13 @@
 #include <filesystem>
+#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/base/sha256.h"
+#include "app/base/text.h"
 #include "app/guard/program_filter.h"
+#include "core/base/platform.h"
 #include "tests/app/checked.h"
 #include "tests/support/shell.h"
 
@@ -129,6 +133,20 @@ TEST_F(Filter, ChecksWhatAnotherFilterWrites) {
     EXPECT_EQ(failed.status, 2);
     EXPECT_EQ(failed.out, "");
     EXPECT_THAT(failed.err, HasSubstr("failed with status 1"));
+}
+
+/// The folder for a copy of the program is one for each program; a killed filter leaves it.
+TEST_F(Filter, TakesOverTheFolderOfAFilterThatWasKilled) {
+    const std::string name = app::sha256_of(app::absolute_path(harmless_)).substr(0, 16);
+    const std::filesystem::path left = folder_.path() / "state/feeler/filter" / name;
+    const auto is_left_by = [&](const std::string& process) {
+        std::filesystem::create_directories(left);
+        std::ofstream(left / ".owner") << process;
+        EXPECT_EQ(filter(harmless_, {"--then", "cat"}).status, 0);
+        return std::filesystem::exists(left);
+    };
+    EXPECT_TRUE(is_left_by(std::to_string(core::platform::process_id()))); // it runs
+    EXPECT_FALSE(is_left_by("999999999"));
 }
 
 TEST_F(Filter, SearchesSubprogramsWhereTheSetUpSaysAlsoAfterAnotherFilter) {

@@ -725,6 +725,13 @@ TEST_F(GatedSender, MayHomeWhileTheGateAsks) {
     EXPECT_THAT(run_, ElementsAre());
 }
 
+TEST_F(GatedSender, IsToldWhatGrblDoesNotUnderstand) {
+    begin();
+    send("#1=5\n");
+    EXPECT_THAT(at_sender_, ::testing::Contains(HasSubstr("does not understand #1=5")));
+    EXPECT_EQ(at_sender_.back(), "error:3");
+}
+
 TEST_F(GatedSender, IsToldThatTheSetupWasEdited) {
     begin();
     send("G0X5\n");

@@ -676,6 +676,17 @@ TEST_F(GuardedMachine, RefusesAFeedWithASpindleThatIsOnAtNoSpeed) {
     EXPECT_THAT(told_.back(), HasSubstr("spindle"));
 }
 
+TEST_F(GuardedMachine, TakesASpindleWhoseSpeedIsSetByHandForTurning) {
+    app::Guard other(setup_.setup, *machine_.ring, 1.0, 0.1, app::ControlKinematics(1.0), true);
+    listen(other);
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(-60, 0, -2);
+    machine_.next.speed = 0.0;
+    const uint64_t cut = machine_.line(0, 0, -2);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), cut);
+}
+
 TEST_F(GuardedMachine, ChecksTapsAsAWhole) {
     machine_.rapid(53, 0, 50);
     const auto tap = [&](double x, double z) {

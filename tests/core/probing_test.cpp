@@ -154,6 +154,19 @@ TEST(Probing, LeavesAContactWithoutRunningIntoAFixture) {
     }
 }
 
+TEST(Probing, KeepsTheErrorOfAPath) {
+    Motion motion{.kind = MotionKind::feed, .path_error = 0.25, .turn_error = 0.01, .feed = 100.0};
+    motion.from.fill(0.0);
+    motion.to.fill(0.0);
+    motion.to[0] = 10.0;
+    AxisSpread spread;
+    spread.above[2] = 3.0;
+    const Path path = path_of(motion, spread, spread, Machine(), 0.01);
+    ASSERT_EQ(path.legs.size(), 1U);
+    EXPECT_EQ(path.legs[0].path_error, 0.25);
+    EXPECT_EQ(path.legs[0].turn_error, 0.01);
+}
+
 /// At a corner, both motions are one hull.
 TEST(Probing, RoundsCornersBetweenRanges) {
     const core::Setup setup = plate();
