@@ -7,10 +7,10 @@ namespace hwsim {
 namespace {
 
 void note_time(PermitUnit& unit, const Dispatched& entry, uint64_t cycle) {
-    const uint64_t taken = cycle - entry.pushed;
-    unit.longest = std::max(unit.longest, taken);
-    if (entry.segment.budget == 0) return;
-    const int64_t slack = int64_t{entry.segment.budget} - static_cast<int64_t>(taken);
+    unit.longest = std::max(unit.longest, cycle - entry.asked);
+    if (!entry.segment.is_timed) return;
+    const int64_t slack =
+        static_cast<int32_t>(entry.segment.deadline - static_cast<uint32_t>(cycle));
     unit.least_slack = std::min(unit.least_slack, slack);
     if (slack < 0) ++unit.missed;
 }
@@ -45,15 +45,12 @@ Retirement retire(PermitUnit& unit, const Answer& answer, uint64_t cycle) {
     return {.permitted = true};
 }
 
-Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t lines) {
-    const DecodedSegment decoded = segment_in(words);
-    if (decoded.fault != Stop::none) return decoded.fault;
-    if (fifo.entries.full()) return Stop::fifo_overrun;
+Stop push(SegmentFifo& fifo, const OrderedEntry& entry) {
     // The number after the last one is 0, which is invalid: a permit must never decrease.
-    if (decoded.segment.sequence != fifo.next_sequence || fifo.next_sequence == 0)
+    if (entry.segment.sequence != fifo.next_sequence || fifo.next_sequence == 0)
         return Stop::sequence;
-    fifo.entries.push({decoded.segment, cycle, lines});
-    if (decoded.segment.last) ++fifo.next_sequence;
+    fifo.entries.push(entry);
+    if (entry.segment.last) ++fifo.next_sequence;
     return Stop::none;
 }
 
@@ -75,7 +72,12 @@ struct Wires {
     bool has_written = false;
     uint32_t written = 0;
     uint64_t writes_done = 0;
-    bool is_memory_stalled = false;
+    bool is_memory_stalled = false; // or that of the host
+    RingInput ring;
+    OrderedEntry entry;
+    OrderFault fault;
+    const Line* copied = nullptr; // a line for the memory
+    uint32_t copied_to = 0;
     std::optional<Answer> answer; // to the first entry
 };
 
@@ -140,9 +142,9 @@ bool begin_search(CoprocessorState& s, const DeviceConfig& config, const Segment
 void dispatch(CoprocessorState& s, const DeviceConfig& config, const Wires& wires) {
     if (s.permits.stopped != Stop::none || !s.host.enabled) return;
     if (s.fifo.entries.empty() || s.permits.in_order.full()) return;
-    const SegmentFifo::Entry& first = s.fifo.entries.front();
+    const OrderedEntry& first = s.fifo.entries.front();
     const Segment& segment = first.segment;
-    Dispatched entry{.segment = segment, .pushed = first.pushed};
+    Dispatched entry{.segment = segment, .asked = first.asked};
     if (segment.kind == SegmentKind::model) {
         if (wires.writes_done < first.lines) return;
         store_model(s, segment);
@@ -168,7 +170,23 @@ size_t granted_element(const CoprocessorState& s) {
     return none;
 }
 
-Wires outputs_of(const CoprocessorState& s, const DeviceConfig& config) {
+/// The outputs of the ring unit before the edge, and what it sees of the others.
+void connect_ring(Wires& wires, const CoprocessorState& s, Line& copied) {
+    wires.ring = {.cycle = wires.cycle,
+                  .run = s.run,
+                  .flush = s.flush,
+                  .is_stopped = s.permits.stopped != Stop::none,
+                  .has_room = s.fifo.entries.free() > (s.ring.entry.valid ? 1U : 0U),
+                  .memory_room = static_cast<uint32_t>(s.memory.writes.free())};
+    if (s.ring.entry.valid) wires.entry = s.ring.entry;
+    if (s.ring.fault.valid) wires.fault = s.ring.fault;
+    if (!s.ring.has_copied) return;
+    wires.copied_to = s.ring.copied_to;
+    copied = s.ring.copied;
+    wires.copied = &copied;
+}
+
+Wires outputs_of(const CoprocessorState& s, const DeviceConfig& config, Line& copied) {
     Wires wires;
     wires.cycle = s.cycle + 1;
     wires.run = s.run;
@@ -181,8 +199,10 @@ Wires outputs_of(const CoprocessorState& s, const DeviceConfig& config) {
     wires.has_written = s.memory.has_written;
     wires.written = s.memory.written;
     wires.writes_done = s.memory.writes_done;
-    wires.is_memory_stalled = is_stalled(s.memory, config, wires.cycle);
+    wires.is_memory_stalled =
+        is_stalled(s.memory, config, wires.cycle) || is_stalled(s.ring, config, wires.cycle);
     wires.answer = first_answer(s);
+    connect_ring(wires, s, copied);
     return wires;
 }
 
@@ -209,6 +229,7 @@ void tick_memory(CoprocessorState& s, const DeviceConfig& config, const Wires& w
     if (wires.granted != none)
         s.next_request = static_cast<uint8_t>((wires.granted + 1) % s.elements.size());
     tick(s.memory, config, wires.cycle, wires.request);
+    if (wires.copied) s.memory.writes.push({wires.copied_to, *wires.copied, wires.cycle});
 }
 
 void tick_permits(CoprocessorState& s, const DeviceConfig& config, const Wires& wires) {
@@ -221,6 +242,7 @@ void tick_permits(CoprocessorState& s, const DeviceConfig& config, const Wires& 
     }
     retire_first(s, wires);
     dispatch(s, config, wires);
+    take_order(s, wires.entry, wires.fault);
     check_watchdog(s, wires);
 }
 
@@ -228,29 +250,35 @@ void tick_permits(CoprocessorState& s, const DeviceConfig& config, const Wires& 
 
 CoprocessorState power_up(const DeviceConfig& config) {
     CoprocessorState s;
-    s.fifo.entries = Ring<SegmentFifo::Entry>(config.fifo_depth);
+    s.fifo.entries = Ring<OrderedEntry>(config.fifo_depth);
     const size_t entries = size_t{config.elements} * config.threads + config.fifo_depth;
     s.permits.in_order = Ring<Dispatched>(entries);
     s.elements.assign(config.elements, search_element(config));
     s.occupied.assign(config.elements, 0);
     s.memory = memory_unit(config);
+    s.ring = ring_unit(config);
     return s;
 }
 
 void tick(CoprocessorState& s, const DeviceConfig& config) {
-    const Wires wires = outputs_of(s, config);
+    Line copied;
+    const Wires wires = outputs_of(s, config, copied);
     for (size_t i = 0; i < s.elements.size(); ++i) tick_element(s, config, wires, i);
     tick_memory(s, config, wires);
+    tick(s.ring, s.shared, config, wires.ring);
     tick_permits(s, config, wires);
 }
 
 void tick_in_order(CoprocessorState& s, const DeviceConfig& config, std::span<const size_t> order) {
-    const Wires wires = outputs_of(s, config);
+    Line copied;
+    const Wires wires = outputs_of(s, config, copied);
     for (const size_t unit : order) {
         if (unit < s.elements.size())
             tick_element(s, config, wires, unit);
         else if (unit == s.elements.size())
             tick_memory(s, config, wires);
+        else if (unit == s.elements.size() + 1)
+            tick(s.ring, s.shared, config, wires.ring);
         else
             tick_permits(s, config, wires);
     }
@@ -265,6 +293,17 @@ void halt(CoprocessorState& s, Stop reason, uint32_t sequence, uint32_t line) {
     s.occupied.assign(s.occupied.size(), 0);
     s.searching = 0;
     s.host.irq_pending |= irq_stop;
+}
+
+void take_order(CoprocessorState& s, const OrderedEntry& entry, const OrderFault& fault) {
+    const auto is_current = [&](const auto& output) {
+        return output.valid && output.run == s.run && s.permits.stopped == Stop::none;
+    };
+    if (is_current(entry))
+        if (const Stop reason = push(s.fifo, entry); reason != Stop::none)
+            halt(s, reason, entry.segment.sequence);
+    if (is_current(fault))
+        halt(s, fault.reason, fault.sequence != 0 ? fault.sequence : next_to_permit(s), fault.line);
 }
 
 Stop fault_of_models(const CoprocessorState& s, const Segment& segment) {
@@ -287,22 +326,15 @@ void store_model(CoprocessorState& s, const Segment& segment) {
 void retire_with(CoprocessorState& s, const Answer& answer) {
     const Dispatched entry = s.permits.in_order.front();
     if (entry.segment.kind != SegmentKind::model) add(s.searched, answer.counts);
-    s.retired = {true, entry.segment, answer, entry.pushed};
+    s.retired = {true, entry.segment, answer, entry.asked};
     const Retirement done = retire(s.permits, answer, s.cycle);
     if (done.permitted) s.host.irq_pending |= irq_permit;
     if (done.measured) s.host.irq_pending |= irq_measured;
     if (done.stopped != Stop::none) halt(s, done.stopped, entry.segment.sequence, answer.at_line);
 }
 
-bool store(CoprocessorState& s, uint32_t address, const Line& line) {
-    if (address >= s.memory.lines.size() || s.memory.writes.full()) return false;
-    s.memory.writes.push({address, line, s.cycle});
-    return true;
-}
-
 namespace {
 
-constexpr uint32_t segment_base = address_of(Register::segment);
 constexpr uint32_t counter_base = address_of(Register::counter);
 
 /// The counter of the elements, or null.
@@ -355,6 +387,8 @@ uint64_t counter(const CoprocessorState& s, Counter which) {
         return static_cast<uint64_t>(s.permits.least_slack);
     case Counter::longest:
         return s.permits.longest;
+    case Counter::host_lines:
+        return s.ring.reads_done;
     default:
         break;
     }
@@ -364,7 +398,8 @@ uint64_t counter(const CoprocessorState& s, Counter which) {
 }
 
 uint32_t status(const CoprocessorState& s) {
-    const bool is_idle = s.fifo.entries.empty() && s.permits.in_order.empty();
+    const bool has_orders = s.permits.stopped == Stop::none && !is_idle(s.ring);
+    const bool is_idle = !has_orders && s.fifo.entries.empty() && s.permits.in_order.empty();
     return (s.host.enabled ? status_enabled : 0U)
            | (s.permits.stopped != Stop::none ? status_stopped : 0U) | (is_idle ? status_idle : 0U)
            | (s.fifo.entries.full() ? status_fifo_full : 0U);
@@ -405,6 +440,23 @@ uint32_t read_of_device(const CoprocessorState& s, const DeviceConfig& config, R
     }
 }
 
+uint32_t read_of_ring(const CoprocessorState& s, Register r) {
+    switch (r) {
+    case Register::ring_base_low:
+        return static_cast<uint32_t>(s.ring.base);
+    case Register::ring_base_high:
+        return static_cast<uint32_t>(s.ring.base >> 32);
+    case Register::ring_log2_size:
+        return s.ring.log2_size;
+    case Register::ring_tail:
+        return s.ring.tail;
+    case Register::ring_head:
+        return s.ring.head;
+    default:
+        return 0;
+    }
+}
+
 uint32_t read_of_stop(CoprocessorState& s, Register r) {
     switch (r) {
     case Register::stop:
@@ -433,8 +485,10 @@ uint32_t read_of_stop(CoprocessorState& s, Register r) {
     }
 }
 
-/// Restarts the watchdogs of host and memory.
-void restart_watchdog(CoprocessorState& s) { s.host.heartbeat = s.memory.watchdog_since = s.cycle; }
+/// Restarts the watchdogs of the host and of both memories.
+void restart_watchdog(CoprocessorState& s) {
+    s.host.heartbeat = s.memory.watchdog_since = s.ring.watchdog_since = s.cycle;
+}
 
 void clear(CoprocessorState& s) {
     if (s.permits.stopped == Stop::none) return;
@@ -442,6 +496,7 @@ void clear(CoprocessorState& s) {
     s.permits.stop_sequence = s.permits.stop_line = 0;
     s.fifo.next_sequence = s.permits.permit_sequence + 1;
     s.slots = {};
+    skip_all(s.ring);
     restart_watchdog(s);
 }
 
@@ -449,10 +504,13 @@ void reset(CoprocessorState& s, const DeviceConfig& config) {
     DeviceMemory lines = std::move(s.memory.lines);
     DeviceConfig without_memory = config;
     without_memory.memory_lines = 1;
-    const bool is_stalled = s.memory.stalled;
+    HostMemory shared = std::move(s.shared);
+    const bool is_stalled = s.memory.stalled, is_host_stalled = s.ring.stalled;
     s = power_up(without_memory);
     s.memory.lines = std::move(lines);
+    s.shared = std::move(shared);
     s.memory.stalled = is_stalled;
+    s.ring.stalled = is_host_stalled;
 }
 
 void write_control(CoprocessorState& s, const DeviceConfig& config, uint32_t value) {
@@ -463,11 +521,13 @@ void write_control(CoprocessorState& s, const DeviceConfig& config, uint32_t val
     s.host.enabled = enable;
 }
 
-/// A refused push stops the device; a stopped device ignores pushes.
-void write_push(CoprocessorState& s) {
-    if (s.permits.stopped != Stop::none) return;
-    const Stop fault = push(s.fifo, s.host.segment, s.cycle, lines_given(s.memory));
-    if (fault != Stop::none) halt(s, fault, segment_in(s.host.segment).segment.sequence);
+void write_ring_place(CoprocessorState& s, Register r, uint32_t value) {
+    if (s.host.enabled) return;
+    constexpr uint64_t low = 0xFFFF'FFFFU;
+    if (r == Register::ring_base_low)
+        s.ring.base = (s.ring.base & ~low) | (value & ~uint32_t{sizeof(Line) - 1});
+    if (r == Register::ring_base_high) s.ring.base = (s.ring.base & low) | uint64_t{value} << 32;
+    if (r == Register::ring_log2_size) s.ring.log2_size = std::min(value, most_log2_ring_size);
 }
 
 } // namespace
@@ -481,15 +541,13 @@ uint32_t read(CoprocessorState& s, const DeviceConfig& config, uint32_t address)
         return static_cast<uint32_t>(value);
     }
     const auto r = static_cast<Register>(address);
-    return r < Register::stop ? read_of_device(s, config, r) : read_of_stop(s, r);
+    if (r < Register::stop) return read_of_device(s, config, r);
+    return r < Register::ring_base_low ? read_of_stop(s, r) : read_of_ring(s, r);
 }
 
 void write(CoprocessorState& s, const DeviceConfig& config, uint32_t address, uint32_t value) {
-    if (address >= segment_base && address < segment_base + 4 * segment_words && address % 4 == 0) {
-        s.host.segment[(address - segment_base) / 4] = value;
-        return;
-    }
-    switch (static_cast<Register>(address)) {
+    const auto r = static_cast<Register>(address);
+    switch (r) {
     case Register::control:
         return write_control(s, config, value);
     case Register::irq_pending:
@@ -504,8 +562,12 @@ void write(CoprocessorState& s, const DeviceConfig& config, uint32_t address, ui
     case Register::watchdog:
         s.host.watchdog = value;
         return;
-    case Register::segment_push:
-        return write_push(s);
+    case Register::ring_base_low:
+    case Register::ring_base_high:
+    case Register::ring_log2_size:
+        return write_ring_place(s, r, value);
+    case Register::ring_tail:
+        return ring_doorbell(s.ring, value);
     default:
         return;
     }

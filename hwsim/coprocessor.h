@@ -6,6 +6,7 @@
 
 #include "hwsim/memory_unit.h"
 #include "hwsim/registers.h"
+#include "hwsim/ring_unit.h"
 #include "hwsim/search_element.h"
 #include "hwsim/segment.h"
 
@@ -14,7 +15,7 @@ namespace hwsim {
 /// The source of the answer to an entry of the FIFO.
 struct Dispatched {
     Segment segment;
-    uint64_t pushed = 0;   // cycle
+    uint64_t asked = 0;    // cycle in which its descriptor was asked for
     bool searched = false; // by a thread; otherwise `fault` is the whole answer
     uint8_t element = 0, thread = 0;
     Stop fault = Stop::none;
@@ -55,20 +56,14 @@ void stop(PermitUnit& unit, Stop reason, uint32_t sequence, uint32_t line = 0);
 
 /// Waiting segments and the next sequence number.
 struct SegmentFifo {
-    struct Entry {
-        Segment segment;
-        uint64_t pushed = 0; // cycle
-        uint64_t lines = 0;  // number of lines stored in memory by then
-        bool operator==(const Entry&) const = default;
-    };
-    Ring<Entry> entries;
+    Ring<OrderedEntry> entries;
     uint32_t next_sequence = 1; // 0: all numbers are used up
 
     bool operator==(const SegmentFifo&) const = default;
 };
 
-/// Adds a segment, or returns the reason for refusal and changes nothing.
-Stop push(SegmentFifo& fifo, const SegmentWords& words, uint64_t cycle, uint64_t lines);
+/// Adds a segment, or returns the reason for refusal and changes nothing. The FIFO has room.
+Stop push(SegmentFifo& fifo, const OrderedEntry& entry);
 
 /// The header of the model in a slot.
 struct ModelSlot {
@@ -93,7 +88,6 @@ struct HostRegisters {
     uint32_t watchdog = 10'000'000; // cycles; 0: off
     uint64_t heartbeat = 0;         // cycle of the last heartbeat
     uint32_t high_word = 0;         // of the pair whose low word was read last
-    SegmentWords segment{};
 
     bool operator==(const HostRegisters&) const = default;
 };
@@ -103,7 +97,7 @@ struct Retired {
     bool valid = false;
     Segment segment;
     Answer answer;
-    uint64_t pushed = 0; // cycle
+    uint64_t asked = 0; // cycle in which its descriptor was asked for
 
     bool operator==(const Retired&) const = default;
 };
@@ -119,6 +113,7 @@ struct CoprocessorState {
     std::array<ModelSlot, model_slots> slots{};
     std::vector<SearchElement> elements;
     MemoryUnit memory;
+    RingUnit ring;
     std::vector<uint32_t> occupied; // bit sets of the threads of each element that have a search
     uint32_t searching = 0;         // their number
     uint8_t next_element = 0;       // has priority for the next search
@@ -128,6 +123,7 @@ struct CoprocessorState {
     bool flush = false;
     SearchTotals searched;
     Retired retired;
+    HostMemory shared; // of the host, which writes it
 
     bool operator==(const CoprocessorState&) const = default;
 };
@@ -139,8 +135,8 @@ CoprocessorState power_up(const DeviceConfig& config);
 void tick(CoprocessorState& state, const DeviceConfig& config);
 
 /// The same, for a given order of the units: an element for each number below the number of
-/// elements, then the memory, then the permit unit. The order does not matter: units see of each
-/// other only what was there before the edge.
+/// elements, then the memory, the ring unit, and the permit unit. The order does not matter: units
+/// see of each other only what was there before the edge.
 void tick_in_order(CoprocessorState& state, const DeviceConfig& config,
                    std::span<const size_t> order);
 
@@ -148,12 +144,13 @@ void tick_in_order(CoprocessorState& state, const DeviceConfig& config,
 uint32_t read(CoprocessorState& state, const DeviceConfig& config, uint32_t address);
 void write(CoprocessorState& state, const DeviceConfig& config, uint32_t address, uint32_t value);
 
-/// Queues a line for writing to memory; false if the queue is full or the address is out of range.
-bool store(CoprocessorState& state, uint32_t address, const Line& line);
-
 /// Stops the device unless it is stopped: the reason is latched, and everything waiting or pending
 /// is dropped.
 void halt(CoprocessorState& state, Stop reason, uint32_t sequence, uint32_t line = 0);
+
+/// What the ring unit orders: an entry goes into the FIFO, a fault stops the device. Outputs from
+/// before a stop are ignored.
+void take_order(CoprocessorState& state, const OrderedEntry& entry, const OrderFault& fault);
 
 /// Shared by the emulator and the functional model: the fault of the models of a segment, its
 /// query, loading a model into its slot, and the effect of the answer to the first entry.

@@ -30,9 +30,9 @@ struct ObservedDevice {
 /// Processes one entry of the FIFO, from its models to its permit.
 void answer_first(FunctionalDevice& device) {
     CoprocessorState& s = device.state;
-    const SegmentFifo::Entry entry = s.fifo.entries.front();
+    const OrderedEntry entry = s.fifo.entries.front();
     s.fifo.entries.pop();
-    s.permits.in_order.push({.segment = entry.segment, .pushed = entry.pushed});
+    s.permits.in_order.push({.segment = entry.segment, .asked = entry.asked});
     Answer answer;
     if (entry.segment.kind == SegmentKind::model)
         store_model(s, entry.segment);
@@ -43,14 +43,59 @@ void answer_first(FunctionalDevice& device) {
     retire_with(s, answer);
 }
 
-/// Processes all entries that can be processed.
-void settle(FunctionalDevice& device) {
-    CoprocessorState& s = device.state;
-    for (; !s.memory.writes.empty(); s.memory.writes.pop()) {
-        s.memory.lines[s.memory.writes.front().address] = s.memory.writes.front().line;
+void copy_all(CoprocessorState& s) {
+    LineCopy& copy = s.ring.current.copy;
+    for (; copy.count > 0; --copy.count, ++copy.line, copy.from += sizeof(Line)) {
+        const Line* line = s.shared.at(copy.from);
+        if (!line) return halt(s, Stop::bad_address, s.permits.permit_sequence + 1, copy.line);
+        s.memory.lines[copy.line] = *line;
+        ++s.ring.lines_asked;
+        ++s.ring.reads_done;
         ++s.memory.writes_done;
     }
-    while (s.host.enabled && !s.fifo.entries.empty()) answer_first(device);
+}
+
+void take_next_line(FunctionalDevice& device) {
+    CoprocessorState& s = device.state;
+    const uint32_t number = s.ring.head;
+    const Line* line = s.shared.at(address_in_ring(s.ring, number));
+    ++s.ring.fetched;
+    ++s.ring.reads_done;
+    if (line)
+        take_line(s.ring, {true, is_intact(*line, number), s.run, number, s.cycle, *line},
+                  device.config);
+    else
+        halt(s, Stop::bad_address, s.permits.permit_sequence + 1, number);
+}
+
+/// Carries out a step of an order; false if there is none, or no room for it.
+bool carry_out(FunctionalDevice& device) {
+    CoprocessorState& s = device.state;
+    if (s.permits.stopped != Stop::none) return false;
+    if (is_overrun(s.ring)) {
+        halt(s, Stop::fifo_overrun, s.permits.permit_sequence + 1, s.ring.tail);
+    } else if (has_copy(s.ring)) {
+        copy_all(s);
+    } else if (has_entry(s.ring)) {
+        if (s.fifo.entries.full()) return false;
+        const OrderedEntry entry = take_entry(s.ring, s.run);
+        if (entry.valid) take_order(s, entry, s.ring.fault);
+    } else if (s.ring.head != s.ring.tail) {
+        take_next_line(device);
+    } else {
+        return false;
+    }
+    if (s.ring.fault.valid) take_order(s, {}, s.ring.fault);
+    return true;
+}
+
+/// Processes everything that can be processed.
+void settle(FunctionalDevice& device) {
+    CoprocessorState& s = device.state;
+    if (std::exchange(s.flush, false)) drop_orders(s.ring);
+    do {
+        while (s.host.enabled && !s.fifo.entries.empty()) answer_first(device);
+    } while (carry_out(device));
 }
 
 } // namespace
@@ -80,12 +125,8 @@ DevicePort port_of(EmulatedDevice& device,
                     observed.access();
                     write(observed.device.state, observed.device.config, address, value);
                 },
-            .store =
-                [observed](uint32_t line, const Line& content) {
-                    observed.cycles(1);
-                    return store(observed.device.state, line, content);
-                },
-            .wait = [observed] { observed.access(); }};
+            .wait = [observed] { observed.access(); },
+            .shared = &device.state.shared};
 }
 
 DevicePort port_of(FunctionalDevice& device) {
@@ -97,13 +138,8 @@ DevicePort port_of(FunctionalDevice& device) {
                 device.state.elements.clear(); // a reset creates them again
                 settle(device);
             },
-        .store =
-            [&device](uint32_t line, const Line& content) {
-                const bool taken = store(device.state, line, content);
-                settle(device);
-                return taken;
-            },
-        .wait = [] {}};
+        .wait = [] {},
+        .shared = &device.state.shared};
 }
 
 namespace {
@@ -113,29 +149,70 @@ constexpr auto index_of(SlotNumber slot) { return static_cast<size_t>(slot); }
 uint32_t read(Driver& driver, Register r) { return driver.port.read(r); }
 void write(Driver& driver, Register r, uint32_t value) { driver.port.write(address_of(r), value); }
 
+void ring_doorbell(Driver& driver) { write(driver, Register::ring_tail, driver.tail); }
+
 bool is_stopped(Driver& driver) { return (read(driver, Register::status) & status_stopped) != 0; }
 
-bool store(Driver& driver, const AddressedLine& line) {
-    for (int tries = 0; !driver.port.store(line.address, line.line); ++tries) {
-        constexpr int patience = 100'000;
-        const auto stop = static_cast<Stop>(read(driver, Register::stop));
-        if (stop == Stop::memory_stalled || tries == patience) return false;
+constexpr uint32_t ring_size = 1U << Driver::log2_ring_size;
+
+/// The device's copy of a line of its memory, in the memory that is shared.
+Line& image_of(Driver& driver, uint32_t line) {
+    std::vector<Line>& lines = driver.port.shared->lines;
+    const size_t at = size_t{ring_size} + line;
+    if (at >= lines.size()) lines.resize(at + 1);
+    return lines[at];
+}
+
+/// Puts lines into the ring once it has room, without the doorbell. A stopped device ignores them.
+void add_to_ring(Driver& driver, std::vector<Line> lines) {
+    const auto has_room = [&] { return driver.tail + lines.size() - driver.head <= ring_size; };
+    while (!has_room()) {
+        ring_doorbell(driver);
+        driver.head = read(driver, Register::ring_head);
+        if (has_room()) break;
+        if (is_stopped(driver)) return;
         write(driver, Register::heartbeat, 1);
         driver.port.wait();
     }
-    return true;
+    for (Line& line : lines) {
+        seal(line, driver.tail);
+        driver.port.shared->lines[driver.tail++ % ring_size] = line;
+    }
 }
 
-core::Result<void> store(Driver& driver, const std::vector<AddressedLine>& lines) {
-    uint32_t end = 0;
-    for (const AddressedLine& line : lines) end = std::max(end, line.address + 1);
-    if (end > driver.written.size()) driver.written.resize(end);
-    for (const AddressedLine& line : lines) driver.written[line.address] = line.line;
-    for (const AddressedLine& line : lines)
-        if (!store(driver, line))
-            return core::fail(core::ErrorCode::unsupported,
-                              "the coprocessor's memory does not accept lines");
-    return {};
+void order_copy(Driver& driver, uint32_t line, uint32_t count) {
+    // Copies before the last one that was taken are carried out even if the device stops.
+    while (!driver.copies.empty()
+           && static_cast<int32_t>(driver.head - 1 - driver.copies.front().number) > 0)
+        driver.copies.pop_front();
+    driver.copies.push_back({driver.tail, line, count});
+    add_to_ring(driver, {descriptor_of(LineCopy{HostMemory::address_of(size_t{ring_size} + line),
+                                                line, count})});
+}
+
+/// Orders copies of lines that are in the image.
+void order_copies(Driver& driver, std::vector<uint32_t> lines) {
+    std::sort(lines.begin(), lines.end());
+    for (size_t i = 0; i < lines.size();) {
+        uint32_t count = 1;
+        while (i + count < lines.size() && lines[i + count] == lines[i] + count) ++count;
+        order_copy(driver, lines[i], count);
+        i += count;
+    }
+}
+
+void store(Driver& driver, const std::vector<AddressedLine>& lines) {
+    std::vector<uint32_t> addresses;
+    for (const AddressedLine& line : lines) {
+        image_of(driver, line.address) = line.line;
+        addresses.push_back(line.address);
+    }
+    order_copies(driver, std::move(addresses));
+}
+
+void give_back_first(Driver& driver) {
+    for (const LineRun& run : driver.released.front().runs) give_back(driver.space, run);
+    driver.released.pop_front();
 }
 
 /// Frees the lines of models that no search needs any more. Counts may wrap around.
@@ -143,36 +220,49 @@ void reclaim(Driver& driver) {
     if (driver.released.empty()) return;
     const uint32_t retired = read(driver, Register::retired);
     while (!driver.released.empty()
-           && static_cast<int32_t>(retired - driver.released.front().entries) >= 0) {
-        for (const LineRun& run : driver.released.front().runs) give_back(driver.space, run);
-        driver.released.pop_front();
-    }
+           && static_cast<int32_t>(retired - driver.released.front().entries) >= 0)
+        give_back_first(driver);
 }
 
-/// Puts an entry into the FIFO once it has room. A stopped device ignores the entry.
-void push_entry(Driver& driver, const Segment& entry) {
-    uint32_t status = read(driver, Register::status);
-    while ((status & status_fifo_full) != 0 && (status & status_stopped) == 0) {
+/// Does something that needs memory; once more, if there is none, after the device has finished
+/// with the models that were released.
+template <typename Act>
+auto with_memory(Driver& driver, const Act& act) {
+    reclaim(driver);
+    auto done = act();
+    if (done || driver.released.empty()) return done;
+    while (!driver.released.empty()) {
+        if (is_stopped(driver)) {
+            give_back_first(driver); // nothing is searched any more
+            continue;
+        }
         write(driver, Register::heartbeat, 1);
         driver.port.wait();
-        status = read(driver, Register::status);
+        reclaim(driver);
     }
-    if ((status & status_stopped) != 0) return;
-    const SegmentWords words = words_of(entry);
-    for (uint32_t i = 0; i < segment_words; ++i)
-        driver.port.write(address_of(Register::segment) + 4 * i, words[i]);
-    write(driver, Register::segment_push, 1);
-    ++driver.entries;
+    return act();
+}
+
+/// Orders permits or measurements of pairs that have the same path, or a model.
+void order(Driver& driver, std::span<const Segment> entries) {
+    while (!entries.empty()) {
+        const size_t count = std::min<size_t>(entries.size(), Descriptor::most_pairs);
+        add_to_ring(driver, descriptor_of(entries.first(count)));
+        driver.entries += static_cast<uint32_t>(count);
+        entries = entries.subspan(count);
+    }
+    ring_doorbell(driver);
 }
 
 void push_model(Driver& driver, SlotNumber slot) {
     const Driver::Slot& model = driver.slots[index_of(slot)];
-    push_entry(driver, {.sequence = driver.next_sequence,
+    const Segment entry{.sequence = driver.next_sequence,
                         .kind = SegmentKind::model,
                         .work_slot = static_cast<uint8_t>(slot),
                         .last = false,
                         .work_epoch = model.epoch,
-                        .model_header = model.header});
+                        .model_header = model.header};
+    order(driver, {&entry, 1});
 }
 
 /// Loads a new model: first its lines into the memory, then its header into a slot.
@@ -184,8 +274,7 @@ core::Result<SlotNumber> new_slot(Driver& driver, Driver::Slot slot, LineSpace s
         return core::fail(
             core::ErrorCode::invalid_value,
             fmt::format("the coprocessor cannot hold more than {} models", model_slots));
-    if (auto stored = store(driver, lines); !stored)
-        return tl::unexpected(std::move(stored).error());
+    store(driver, lines);
     driver.space = std::move(space);
     const auto number = static_cast<SlotNumber>(free - driver.slots.begin());
     if (free == driver.slots.end())
@@ -221,7 +310,8 @@ core::Result<Segment> entry_of(const Driver& driver, const PathSegment& path,
                   .tool_slot = static_cast<uint8_t>(pair.tool),
                   .work_slot = static_cast<uint8_t>(pair.work),
                   .work_epoch = driver.slots[index_of(pair.work)].epoch,
-                  .budget = path.budget};
+                  .is_timed = path.deadline.has_value(),
+                  .deadline = path.deadline.value_or(0)};
     FEELER_TRY(entry.start, fixed_position(path.from));
     FEELER_TRY(entry.end, fixed_position(path.to));
     double step = glm::length(path.to - path.from);
@@ -263,6 +353,11 @@ core::Result<Driver> open_device(DevicePort port) {
                           "the device at the port is not a coprocessor of this version");
     write(driver, Register::control, control_reset);
     driver.space.end = read(driver, Register::lines);
+    driver.port.shared->lines.assign(ring_size, {});
+    constexpr uint64_t base = HostMemory::address_of(0);
+    write(driver, Register::ring_base_low, static_cast<uint32_t>(base));
+    write(driver, Register::ring_base_high, static_cast<uint32_t>(base >> 32));
+    write(driver, Register::ring_log2_size, Driver::log2_ring_size);
     write(driver, Register::control, control_enable);
     return driver;
 }
@@ -274,25 +369,27 @@ core::Result<SlotNumber> load_tool(Driver& driver, const core::RevolvedProfile& 
 }
 
 core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Record> records) {
-    reclaim(driver);
-    LineSpace space = driver.space;
-    ModelWriter writer{.space = &space, .side = side, .epoch = 1};
-    Branch root;
-    if (!records.empty()) {
-        FEELER_TRY(root,
-                   add_tree(writer, std::move(records), side == Side::tool ? 1 : driver.leaf_size));
-    }
-    FEELER_TRY(const uint32_t header, add_header(writer, root));
-    return new_slot(driver, {side, header, 1, writer.runs, {}}, std::move(space), writer.lines);
+    return with_memory(driver, [&]() -> core::Result<SlotNumber> {
+        LineSpace space = driver.space;
+        ModelWriter writer{.space = &space, .side = side, .epoch = 1};
+        Branch root;
+        if (!records.empty()) {
+            FEELER_TRY(root, add_tree(writer, records, side == Side::tool ? 1 : driver.leaf_size));
+        }
+        FEELER_TRY(const uint32_t header, add_header(writer, root));
+        return new_slot(driver, {side, header, 1, writer.runs, {}}, std::move(space), writer.lines);
+    });
 }
 
 core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock) {
-    Driver::Slot slot{.stock = stock_model(cells_of(stock), driver.leaf_size)};
-    LineSpace space = driver.space;
-    FEELER_TRY(const StockUpdate done, update(*slot.stock, space, stock.columns));
-    slot.header = done.header;
-    slot.epoch = done.epoch;
-    return new_slot(driver, std::move(slot), std::move(space), done.lines);
+    return with_memory(driver, [&]() -> core::Result<SlotNumber> {
+        Driver::Slot slot{.stock = stock_model(cells_of(stock), driver.leaf_size)};
+        LineSpace space = driver.space;
+        FEELER_TRY(const StockUpdate done, update(*slot.stock, space, stock.columns));
+        slot.header = done.header;
+        slot.epoch = done.epoch;
+        return new_slot(driver, std::move(slot), std::move(space), done.lines);
+    });
 }
 
 void unload(Driver& driver, SlotNumber number) {
@@ -306,29 +403,27 @@ void unload(Driver& driver, SlotNumber number) {
 }
 
 core::Result<size_t> update_stock(Driver& driver, SlotNumber number, const core::CutModel& stock) {
-    reclaim(driver);
     if (index_of(number) >= driver.slots.size() || driver.slots[index_of(number)].is_free
         || !driver.slots[index_of(number)].stock)
         return core::fail(core::ErrorCode::invalid_value, "only a stock can be cut");
     Driver::Slot& slot = driver.slots[index_of(number)];
     if (is_current(*slot.stock, stock.columns)) return 0;
-    FEELER_TRY(const StockUpdate done, update(*slot.stock, driver.space, stock.columns));
+    FEELER_TRY(const StockUpdate done, with_memory(driver, [&] {
+                   return update(*slot.stock, driver.space, stock.columns);
+               }));
     slot.header = done.header;
     slot.epoch = done.epoch;
-    auto stored = store(driver, done.lines);
-    if (stored) push_model(driver, number);
+    store(driver, done.lines);
+    push_model(driver, number);
     driver.released.push_back({driver.entries, done.released});
-    if (!stored) return tl::unexpected(std::move(stored).error());
     return done.tiles;
 }
 
 core::Result<uint32_t> push(Driver& driver, const PathSegment& segment) {
-    FEELER_TRY(const std::vector<Segment> entries, entries_of(driver, segment));
-    for (size_t i = 0; i < entries.size(); ++i) {
-        Segment entry = entries[i];
-        entry.last = i + 1 == entries.size();
-        push_entry(driver, entry);
-    }
+    FEELER_TRY(std::vector<Segment> entries, entries_of(driver, segment));
+    for (Segment& entry : entries) entry.last = false;
+    entries.back().last = true;
+    order(driver, entries);
     return driver.next_sequence++;
 }
 
@@ -340,7 +435,7 @@ core::Result<std::optional<FoundPair>> measure(Driver& driver, const PathSegment
         entry.kind = SegmentKind::measure;
         if (segment.pairs[i].distance == 0.0) entry.threshold = 0;
         entry.last = false;
-        push_entry(driver, entry);
+        order(driver, {&entry, 1});
         if (wait_for_all(driver).stop != Stop::none) return std::optional<FoundPair>();
         std::optional<FoundPair> pair = found_pair(driver);
         if (pair)
@@ -391,9 +486,16 @@ void recover(Driver& driver) {
     if (!is_stopped(driver)) return;
     const auto reason = static_cast<Stop>(read(driver, Register::stop));
     const uint32_t line = read(driver, Register::stop_line);
+    driver.head = read(driver, Register::ring_head);
+    ring_doorbell(driver);
     write(driver, Register::control, control_clear | control_enable);
-    if (reason == Stop::bad_check && line < driver.written.size())
-        store(driver, {line, driver.written[line]});
+    const std::deque<Driver::PendingCopy> copies = std::exchange(driver.copies, {});
+    const uint32_t last_taken = driver.head - 1;
+    driver.head = driver.tail;
+    for (const Driver::PendingCopy& copy : copies)
+        if (static_cast<int32_t>(copy.number - last_taken) >= 0)
+            order_copy(driver, copy.line, copy.count);
+    if (reason == Stop::bad_check && line < driver.space.next) order_copy(driver, line, 1);
     driver.next_sequence = read(driver, Register::next_seq);
     // Nothing is pending any more, so the old models are not needed.
     driver.entries = read(driver, Register::retired);

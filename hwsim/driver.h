@@ -5,16 +5,17 @@
 
 #include "core/geom/profile.h"
 #include "hwsim/registers.h"
+#include "hwsim/ring_unit.h"
 #include "hwsim/stock_model.h"
 
 namespace hwsim {
 
-/// The interface of a driver to any device: registers and memory.
+/// The interface of a driver to any device: registers, and memory that both can read.
 struct DevicePort {
     std::function<uint32_t(Register)> read;
     std::function<void(uint32_t address, uint32_t value)> write; // address in bytes
-    std::function<bool(uint32_t line, const Line&)> store;       // by DMA; false: the queue is full
     std::function<void()> wait;                                  // called to let a little time pass
+    HostMemory* shared = nullptr; // written by the driver, read by the device
 };
 
 /// A slot of the device, by number.
@@ -37,11 +38,21 @@ struct Driver {
         std::vector<LineRun> runs;
     };
 
+    /// A copy that the device may not have carried out.
+    struct PendingCopy {
+        uint32_t number = 0; // of its descriptor
+        uint32_t line = 0, count = 0;
+    };
+    static constexpr uint32_t log2_ring_size = 8;
+
+    // The shared memory holds the ring, then all lines of the device's memory that are in use: what
+    // is to be copied, and what a corrupted line should be.
     DevicePort port;
     LineSpace space;
     std::vector<Slot> slots;
-    std::vector<Line> written; // by address, to rewrite a corrupted line
     std::deque<Released> released;
+    std::deque<PendingCopy> copies;
+    uint32_t tail = 0, head = 0; // of the ring; `head` as last read
     uint32_t next_sequence = 1;
     uint32_t entries = 0;   // pushed since reset
     uint32_t leaf_size = 4; // of work models; tool models have 1
@@ -57,8 +68,8 @@ struct RequiredPair {
 struct PathSegment {
     core::Vec3 from = core::Vec3(0.0), to = core::Vec3(0.0);
     std::vector<RequiredPair> pairs;
-    double sample_step = 0.1; // mm: greatest distance between two samples
-    uint32_t budget = 0;      // cycles until the permit is needed; 0: unlimited
+    double sample_step = 0.1;              // mm: greatest distance between two samples
+    std::optional<uint32_t> deadline = {}; // low word of the cycle in which the permit is needed
 };
 
 /// The nearest pair of a violation or a measurement.
@@ -84,8 +95,7 @@ core::Result<Driver> open_device(DevicePort port);
 /// Loads a tool into the device: an upright body of revolution, as cylinders. For users of the
 /// driver; a check uses load_records() with records that it has prepared.
 ///
-/// Errors:  those of cylinders_round(); no free slot; the memory is full or accepts no lines;
-///          coordinates out of range.
+/// Errors:  those of cylinders_round(); no free slot; the memory is full; coordinates out of range.
 core::Result<SlotNumber> load_tool(Driver& driver, const core::RevolvedProfile& profile,
                                    double tolerance = 0.02);
 
@@ -98,11 +108,10 @@ core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock)
 /// Removes a model from the device. Segments pushed before still use it; its slot may be reused.
 void unload(Driver& driver, SlotNumber slot);
 
-/// Updates a stock for the segments from the next one on: changed tiles go by DMA, the new epoch
-/// through the FIFO. Returns the number of tiles.
+/// Updates a stock for the segments from the next one on: orders copies of its changed tiles, then
+/// the new epoch. Returns the number of tiles.
 ///
-/// Errors:  not a stock; the memory is full: the stock stays as before, which is larger; the memory
-///          accepts no lines: segments are then refused.
+/// Errors:  not a stock; the memory is full: the stock stays as before, which is larger.
 core::Result<size_t> update_stock(Driver& driver, SlotNumber slot, const core::CutModel& stock);
 
 /// Requests a permit and returns the sequence number of the segment. A stopped device ignores it:

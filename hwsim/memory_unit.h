@@ -25,6 +25,7 @@ public:
     bool empty() const { return level_ == 0; }
     bool full() const { return level_ == items_.size(); }
     size_t size() const { return level_; }
+    size_t free() const { return items_.size() - level_; }
     const T& front() const {
         assert(!empty());
         return items_[first_];
@@ -141,8 +142,8 @@ using CheckUnit = Pipeline<ReadResponse, 4>;
 
 /// The memory and its port. Reads are in order, each after the latency, limited by the bandwidth; a
 /// line is read when its turn comes at the port, and checked when it arrives.
-/// Lines written by DMA are interleaved: when no read waits, or alternating with reads while the
-/// write queue is full.
+/// Lines that are copied from the host are interleaved: when no read waits, or alternating with
+/// reads while the write queue is full.
 struct MemoryUnit {
     struct Pending {
         ReadRequest request;
@@ -153,7 +154,7 @@ struct MemoryUnit {
     struct Write {
         uint32_t address = 0;
         Line line;
-        uint64_t cycle = 0; // of the call to store()
+        uint64_t cycle = 0; // in which it came
         bool operator==(const Write&) const = default;
     };
 
@@ -177,11 +178,6 @@ MemoryUnit memory_unit(const DeviceConfig& config);
 
 /// Whether a request can be accepted.
 inline bool accepts(const MemoryUnit& unit) { return !unit.asked.full(); }
-
-/// The number of lines stored since reset, including queued ones.
-inline uint64_t lines_given(const MemoryUnit& unit) {
-    return unit.writes_done + unit.writes.size();
-}
 
 /// One rising clock edge.
 void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in);

@@ -8,7 +8,8 @@ namespace hwsim {
 
 /// The registers, by byte address on a 32-bit bus (AXI4-Lite). Registers are read-only unless
 /// stated otherwise; writing to them, or to another address, has no effect. Pairs of words: low,
-/// then high; reading the low word stores the high one for the next read.
+/// then high; reading the low word stores the high one for the next read. The place of the ring can
+/// be written while the device is not enabled.
 enum class Register : uint32_t {
     identification = 0x000, // `identification_word`
     version = 0x004,
@@ -38,14 +39,18 @@ enum class Register : uint32_t {
     found_seq = 0x064,   // the segment to which it belongs
     found_valid = 0x068, // whether a pair was below the limit
 
-    segment = 0x080,      // write: `SegmentWord`, 0x080 .. 0x0BC
-    segment_push = 0x0C0, // write: takes the words above into the FIFO
+    ring_base_low = 0x080,  // read and write: byte address of the ring in the host's memory;
+    ring_base_high = 0x084, // the low 6 bits are 0
+    ring_log2_size = 0x088, // read and write: it has 2^this lines, at most 2^16
+    ring_tail = 0x08C,      // read and write: the doorbell, lines written to the ring since reset
+    ring_head = 0x090,      // lines of it that are taken; they may be overwritten
 
     counter = 0x100, // `Counter` number i at 0x100 + 8 i, pairs of words
 };
 
 constexpr uint32_t identification_word = 0x464C'5231; // "FLR1"
-constexpr uint32_t version_word = 1;
+constexpr uint32_t version_word = 2;
+constexpr uint32_t most_log2_ring_size = 16;
 
 enum ControlBit : uint32_t {
     control_enable = 1U << 0, // if 0, segments wait and nothing is permitted
@@ -66,32 +71,7 @@ enum IrqBit : uint32_t {
     irq_measured = 1U << 2,
 };
 
-/// The words of a segment in the window at `Register::segment`, word i at + 4 i. Signed numbers are
-/// sign-extended to 32 bits; a coordinate that does not fit into 24 is out of range.
-enum class SegmentWord : uint32_t {
-    sequence = 0,
-    kind = 1,  // bits 0-7 SegmentKind, 8-15 log2_steps, 16-20 tool slot, 21-25 work slot, 31 last
-    start = 2, // x, y, z
-    end = 5,   // x, y, z
-    threshold = 8,
-    work_epoch = 9,
-    model_header = 10,
-    budget = 11,
-};
-constexpr uint32_t segment_words = 12;
 constexpr uint32_t model_slots = 32;
-
-using SegmentWords = std::array<uint32_t, segment_words>;
-
-SegmentWords words_of(const Segment& segment);
-
-/// The segment encoded in the words, and its fault: none or out_of_range. Only an entry that
-/// requests a permit can be the last of its segment.
-struct DecodedSegment {
-    Segment segment;
-    Stop fault = Stop::none;
-};
-DecodedSegment segment_in(const SegmentWords& words);
 
 /// Counters of the device since reset.
 enum class Counter : uint32_t {
@@ -107,16 +87,17 @@ enum class Counter : uint32_t {
     record_hits,
     record_misses,
     lines_read,    // from memory
-    lines_written, // by DMA
+    lines_written, // of copies
     wait_memory,   // thread-cycles: for a line
     wait_port,     // for a cache or a unit used by another thread
     wait_retire,   // done, but waiting for an earlier segment
-    missed,        // permits after their budget
+    missed,        // permits after their deadline
     deepest,       // stack of any search
-    least_slack,   // cycles left of the budget, signed; the greatest number if there was no budget
-    longest,       // cycles of a query, push to permit
+    least_slack,   // cycles before the deadline, signed; the greatest number if there was none
+    longest,       // cycles of a query, from the request for its descriptor to its permit
+    host_lines,    // read from the host's memory
 };
-constexpr uint32_t counter_count = 20;
+constexpr uint32_t counter_count = 21;
 constexpr uint64_t no_slack = 0x7FFF'FFFF'FFFF'FFFFULL;
 
 constexpr uint32_t address_of(Register r) { return static_cast<uint32_t>(r); }
@@ -145,7 +126,10 @@ struct DeviceConfig {
     uint32_t memory_latency = 30;      // cycles from a request to its line
     uint32_t cycles_per_line = 2;      // of memory: its bandwidth
     uint32_t memory_queue = 64;        // requests
-    uint32_t write_queue = 16;         // lines on their way by DMA
+    uint32_t write_queue = 16;         // lines to be written
+    uint32_t host_latency = 60;        // cycles from a request to a line of the host's memory
+    uint32_t host_cycles_per_line = 4; // its bandwidth
+    uint32_t host_queue = 16;          // such requests, and descriptors that wait
     uint32_t search_limit = 2'000'000; // cycles of one search
     uint32_t memory_limit = 100'000;   // cycles for a line
 

@@ -32,7 +32,8 @@ struct Segment {
                             // limit, 0: unlimited
     uint32_t work_epoch = 0;   // the required epoch of the work model
     uint32_t model_header = 0; // for `model`: the header line; its epoch is `work_epoch`
-    uint32_t budget = 0;       // cycles from the push until the permit is needed; 0: unlimited
+    bool is_timed = false;     // has a deadline
+    uint32_t deadline = 0;     // low word of the cycle in which the permit is needed
 
     bool operator==(const Segment&) const = default;
 };
@@ -43,7 +44,7 @@ enum class Stop : uint8_t {
     violation = 1,      // the tool comes too close
     out_of_range = 2,   // a coordinate beyond 24 bits, or an invalid word
     sequence = 3,       // an unexpected sequence number
-    fifo_overrun = 4,   // pushed while the FIFO was full
+    fifo_overrun = 4,   // the doorbell names more descriptors than the ring holds
     model_missing = 5,  // a slot without a model
     model_changed = 6,  // the work model does not have the required epoch
     bad_check = 7,      // a line of memory with a wrong check word
@@ -51,9 +52,10 @@ enum class Stop : uint8_t {
     stack_overflow = 9, // a search deeper than the stack
     too_long = 10,      // a search of more cycles than allowed
     memory_stalled = 11,
-    host_silent = 12, // no heartbeat
+    host_silent = 12,    // no heartbeat
+    bad_descriptor = 13, // with a wrong check word, or one that orders nothing
 };
-constexpr uint8_t stop_count = 13;
+constexpr uint8_t stop_count = 14;
 
 /// The name in reports, such as `stack-overflow`.
 const char* name_of(Stop stop);

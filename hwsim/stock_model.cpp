@@ -131,7 +131,8 @@ class Update {
 public:
     Update(StockModel& model, LineSpace& space, const ScanLines& columns)
         : model_(model), columns_(columns), space_(space) {
-        writer_ = {.space = &space_, .epoch = model.epoch + 1};
+        if (model.epoch == UINT32_MAX) begin_again();
+        writer_ = {.space = &space_, .epoch = model_.epoch + 1};
         across_ = tiles_along(columns.u_count());
     }
 
@@ -158,6 +159,15 @@ private:
 
     bool is_changed(size_t tile) const {
         return !model_.header || columns_.tile(tile) != model_.columns.tile(tile);
+    }
+
+    /// After the last epoch: no line of the model remains.
+    void begin_again() {
+        done_.released = lines_of(model_);
+        model_.header.reset();
+        for (auto* parts : {&model_.tiles, &model_.above})
+            for (StockModel::Part& part : *parts) part.runs.clear();
+        model_.epoch = 0;
     }
 
     /// Replaces the lines of a part by those that `make` creates.

@@ -88,7 +88,8 @@ bool is_current(const StockModel& model, const core::ScanLines& columns);
 
 /// Updates the model to the current columns: creates the lines of all tiles that the columns do not
 /// share with those of the last update, of the tree above them, and of a new header. Lines that the
-/// device may be reading are not changed.
+/// device may be reading are not changed. After epoch 2^32 - 1 all lines are created anew, with
+/// epoch 1.
 ///
 /// Errors:  out of the device's range or memory; the model and the space are then unchanged. The
 ///          columns must have the same grid.

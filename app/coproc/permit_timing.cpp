@@ -137,6 +137,9 @@ void read_device(TableReader& table, hwsim::DeviceConfig& device) {
     read_count(table, "cycles_per_line", device.cycles_per_line);
     read_count(table, "memory_queue", device.memory_queue);
     read_count(table, "write_queue", device.write_queue);
+    read_count(table, "host_latency", device.host_latency);
+    read_count(table, "host_cycles_per_line", device.host_cycles_per_line);
+    read_count(table, "host_queue", device.host_queue);
     read_count(table, "search_limit", device.search_limit);
     read_count(table, "memory_limit", device.memory_limit);
     table.finish();

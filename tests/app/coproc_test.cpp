@@ -268,6 +268,7 @@ TEST(VcdTrace, IsAFileOfChanges) {
 TEST(VcdTrace, WritesNoValueWiderThanItsSignal) {
     hwsim::DeviceConfig config;
     config.fifo_depth = config.memory_queue = config.write_queue = 4096;
+    config.host_queue = 256;
     config.elements = 64;
     config.threads = 16;
     hwsim::CoprocessorState state = power_up(config);
@@ -279,7 +280,9 @@ TEST(VcdTrace, WritesNoValueWiderThanItsSignal) {
     }
     while (!state.permits.in_order.full()) state.permits.in_order.push({});
     state.searching = 1024;
-    state.permits.stopped = hwsim::Stop::host_silent;
+    state.permits.stopped = hwsim::Stop::bad_descriptor;
+    state.ring.tail = 0xFFFF'FFFF;
+    while (!state.ring.under_way.full()) state.ring.under_way.push({});
     for (hwsim::SearchElement& element : state.elements)
         element.busy = element.waiting = element.done = 0xFFFF;
     hwsim::VcdTrace trace(config);
@@ -298,7 +301,7 @@ TEST(VcdTrace, WritesNoValueWiderThanItsSignal) {
         EXPECT_LE(first.size() - 1, bits.at(name)) << line;
         ++values;
     }
-    EXPECT_EQ(bits.size(), 15U + 3 * 64);
+    EXPECT_EQ(bits.size(), 17U + 3 * 64);
     EXPECT_GT(values, 3U * 64);
 }
 

@@ -145,7 +145,7 @@ void memory_table(const std::vector<Scene>& scenes) {
 
 /// Memory latency and time per line in nanoseconds: given by the board, whatever the clock of the
 /// device.
-constexpr uint32_t memory_ns = 300, line_ns = 20;
+constexpr uint32_t memory_ns = 300, line_ns = 20, host_ns = 600, host_line_ns = 40;
 
 /// A device with memory times in nanoseconds.
 DeviceConfig clocked(uint32_t elements, uint32_t clock_mhz) {
@@ -155,6 +155,8 @@ DeviceConfig clocked(uint32_t elements, uint32_t clock_mhz) {
     config.clock_mhz = clock_mhz;
     config.memory_latency = cycles(memory_ns);
     config.cycles_per_line = cycles(line_ns);
+    config.host_latency = cycles(host_ns);
+    config.host_cycles_per_line = cycles(host_line_ns);
     return config;
 }
 

@@ -6,7 +6,7 @@ usage: feed_limit.py FEELER ASSETS [--only NAME] [--config DEVICE.toml]
 The whole plan is run faster and faster, as with a feed override (`feeler coproc`), until a permit comes late;
 then bisection finds that override to 5 %. The feed is the programmed one of the first late block, times the
 override. The next columns give the override at which a machine that stops at once would reach a block without
-a permit, and the share of the device's time that goes into writing segments over the bus.
+a permit, and the share of the device's time in which it reads lines from the host.
 """
 
 import argparse
@@ -27,7 +27,6 @@ JOBS = (  # program, set-up
 )
 PRECISION = 1.05
 MOST = 10.0  # times the programmed feed: the highest override of a device file
-BUS_CYCLES = 56  # to read the status and to push a segment: 14 accesses of 4 cycles
 
 
 def bracket(keeps_up, most=MOST, precision=PRECISION):
@@ -120,11 +119,10 @@ def without_braking(report):
     return least, late
 
 
-def bus_share(report):
-    """The share of the device's time taken by the register bus that carries the segments."""
-    segments = sum(block["segments"] for block in report["blocks"])
-    cycles = sum(block["interval"] for block in report["blocks"])
-    return min(1.0, BUS_CYCLES * segments / max(cycles, 1))
+def host_share(report):
+    """The share of the device's time in which descriptors and lines come from the host."""
+    lines = report["counters"]["host_lines"] * report["config"]["device"]["host_cycles_per_line"]
+    return min(1.0, lines / max(sum(block["interval"] for block in report["blocks"]), 1))
 
 
 def reason(report, block):
@@ -191,7 +189,7 @@ class Job:
         normal = self.report(1.0)
         _, missed = bracket(self.keeps_up)
         late = first_late(self.report(missed)) if missed else None
-        return ([f"{100.0 * bus_share(normal):.0f} %"] + cells(*without_braking(normal))
+        return ([f"{100.0 * host_share(normal):.0f} %"] + cells(*without_braking(normal))
                 + cells(missed, late) + [reason(self.report(missed), late) if late else f"none up to {MOST:.0f}"])
 
 
@@ -206,7 +204,7 @@ def main():
     if options.config:
         with open(options.config, encoding="utf-8") as file:
             config = file.read()
-    print("| set-up | bus | late without braking at | feed, mm/min | line "
+    print("| set-up | host | late without braking at | feed, mm/min | line "
           "| late at override | feed, mm/min | line | by |")
     print("|---|---|---|---|---|---|---|---|---|")
     for program, setup in JOBS:

@@ -21,7 +21,7 @@ public:
     }
     void set_failing(bool is_failing) {
         is_failing_ = is_failing;
-        device_.state.memory.stalled = false;
+        device_.state.memory.stalled = device_.state.ring.stalled = false;
         device_.state.host.watchdog = 100'000;
     }
 
@@ -33,6 +33,12 @@ private:
         if (random_() % 10'000 == 0) s.memory.stalled = true;
         if (s.memory.stalled && random_() % 3'000 == 0) s.memory.stalled = false;
         if (random_() % 20'000 == 0) s.host.watchdog = 1;
+        // In the ring, near its end; what is wrong in the images of lines stays wrong.
+        const uint32_t number = s.ring.tail + random_() % 3 - 2;
+        if (random_() % 1'000 == 0)
+            s.shared.lines[number % (1U << Driver::log2_ring_size)].word[random_() % 16] ^=
+                1U << (random_() % 32);
+        if (random_() % 20'000 == 0) s.ring.stalled = true;
     }
 
     std::mt19937 random_;
@@ -54,6 +60,9 @@ DeviceConfig random_config(std::mt19937& rng) {
             .cycles_per_line = one_of({1, 2, 7}),
             .memory_queue = one_of({1, 2, 64}),
             .write_queue = one_of({1, 3, 16}),
+            .host_latency = one_of({1, 3, 60}),
+            .host_cycles_per_line = one_of({1, 4}),
+            .host_queue = one_of({1, 2, 16}),
             .memory_limit = 2'000};
 }
 
@@ -146,8 +155,8 @@ TEST(DriverFault, RecoversFromAnyFaultAtAnyMomentAndPermitsNothingTooNear) {
         permitted += job.permitted;
     }
     EXPECT_GT(permitted, 1'000U);
-    for (const Stop stop :
-         {Stop::violation, Stop::bad_check, Stop::memory_stalled, Stop::host_silent})
+    for (const Stop stop : {Stop::violation, Stop::bad_check, Stop::memory_stalled,
+                            Stop::host_silent, Stop::bad_descriptor})
         EXPECT_GT(stops[static_cast<size_t>(stop)], 20U) << static_cast<int>(stop);
 }
 

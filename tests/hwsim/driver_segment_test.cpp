@@ -8,15 +8,7 @@ namespace {
 
 TEST(DriverSegment, SamplesAsDenselyAsRequestedAndNoDenser) {
     FunctionalDevice device = functional_device({.memory_lines = 64}).value();
-    uint32_t kind = 0;
-    DevicePort port = port_of(device);
-    const auto write = port.write;
-    port.write = [&](uint32_t address, uint32_t value) {
-        if (address == address_of(Register::segment) + 4 * static_cast<uint32_t>(SegmentWord::kind))
-            kind = value;
-        write(address, value);
-    };
-    Driver driver = open_device(std::move(port)).value();
+    Driver driver = open_device(port_of(device)).value();
     const SlotNumber tool = load_records(driver, Side::tool, {{{0, 0, 0}, 0, 0}}).value();
     const SlotNumber work = load_records(driver, Side::work, {{{0, 0, 0}, 0, 0}}).value();
     for (const auto& [length, log2_steps] : {std::pair{0.0, 0U},
@@ -27,7 +19,7 @@ TEST(DriverSegment, SamplesAsDenselyAsRequestedAndNoDenser) {
                                              {3.2, 5U},
                                              {3.3, 6U}}) {
         ASSERT_TRUE(push(driver, {{0, 0, 9}, {0, 0, 9 + length}, {{tool, work, 1.0}}, 0.1}));
-        EXPECT_EQ((kind >> 8) & 0xFFU, log2_steps) << length;
+        EXPECT_EQ(device.state.retired.segment.log2_steps, log2_steps) << length;
     }
 }
 

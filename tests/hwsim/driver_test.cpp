@@ -167,7 +167,7 @@ TEST(Driver, SendsNoSegmentBeforeItsLinesAreWritten) {
     Driver driver = open_device(port_of(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     const auto wait_until_written = [&] {
-        for (int i = 0; i < 5'000; ++i) driver.port.wait();
+        for (int i = 0; i < 40'000; ++i) driver.port.wait();
         ASSERT_TRUE(device.state.memory.writes.empty());
     };
     core::CutModel stock = raw.uncut(1.0);
@@ -176,7 +176,7 @@ TEST(Driver, SendsNoSegmentBeforeItsLinesAreWritten) {
     const auto cutter = std::make_shared<core::Cutter>(
         core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
     for (uint32_t i = 1; i < 20; ++i) {
-        EXPECT_FALSE(device.state.memory.writes.empty());
+        EXPECT_FALSE(is_idle(device.state.ring)); // lines are still to come
         EXPECT_EQ(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}).value(), i);
         const DeviceReport now = wait_for_all(driver);
         ASSERT_EQ(now.stop, Stop::none);
@@ -263,10 +263,8 @@ TEST(Driver, ChecksSegmentsAgainstAModelThatIsRemovedAfterThem) {
 }
 
 TEST(Driver, DoesNotTakeAnythingForACoprocessor) {
-    EXPECT_FALSE(open_device({.read = [](Register) { return 0U; },
-                              .write = [](uint32_t, uint32_t) {},
-                              .store = [](uint32_t, const Line&) { return true; },
-                              .wait = [] {}}));
+    EXPECT_FALSE(open_device(
+        {.read = [](Register) { return 0U; }, .write = [](uint32_t, uint32_t) {}, .wait = [] {}}));
 }
 
 TEST(Driver, SaysWhenTheMemoryIsTooSmall) {
@@ -336,21 +334,72 @@ TEST(Driver, RecoversFromAMemoryThatStoredNoLines) {
     core::cut(stock, {cutter, {-20, 0, -4}, {20, 0, -4}});
     wait_for_all(driver);
     device.state.memory.stalled = true;
-    EXPECT_FALSE(update_stock(driver, work, stock));
-    EXPECT_FALSE(load_tool(driver, holder));
-    EXPECT_EQ(driver.slots.size(), 2U);
-    EXPECT_EQ(report(driver).stop, Stop::memory_stalled);
+    EXPECT_TRUE(update_stock(driver, work, stock));
+    const SlotNumber other = load_tool(driver, holder).value();
     EXPECT_TRUE(push(driver, above));
-    EXPECT_EQ(wait_for_all(driver).permitted, 0U);
+    const DeviceReport now = wait_for_all(driver);
+    EXPECT_EQ(now.stop, Stop::memory_stalled);
+    EXPECT_EQ(now.permitted, 0U);
+    // What is ordered while the device is stopped is not lost either.
+    const SlotNumber third = load_tool(driver, holder).value();
     device.state.memory.stalled = false;
-    // Lines that never came are found one by one, and written.
+    recover(driver);
     uint32_t permitted = 0;
-    for (int tries = 0; tries < 200 && permitted == 0; ++tries) {
+    for (const SlotNumber number : {tool, other, third})
+        EXPECT_EQ(push(driver, {{-20, 0, 1.2}, {20, 0, 1.2}, {{number, work, 1.0}}}).value(),
+                  ++permitted);
+    EXPECT_EQ(wait_for_all(driver).permitted, permitted);
+    EXPECT_EQ(report(driver).stop, Stop::none);
+}
+
+/// Whatever was copied when the device stopped, the job goes on after one recovery.
+TEST(Driver, OrdersTheCopiesAgainThatAStopCutOff) {
+    for (uint32_t delay = 0; delay < 3'000; delay += 7) {
+        EmulatedDevice device = emulated_device(bench_config()).value();
+        device.bus_cycles = 1;
+        Driver driver = open_device(port_of(device)).value();
+        const SlotNumber tool = load_tool(driver, holder).value();
+        core::CutModel stock = raw.uncut(1.0);
+        const SlotNumber work = load_stock(driver, stock).value();
+        for (uint32_t i = 0; i < delay; ++i) driver.port.wait();
+        halt(device.state, Stop::host_silent, 1);
         recover(driver);
-        EXPECT_EQ(push(driver, above).value(), 1U);
-        permitted = wait_for_all(driver).permitted;
+        EXPECT_EQ(push(driver, {{-20, 0, 1.2}, {20, 0, 1.2}, {{tool, work, 1.0}}}).value(), 1U);
+        const DeviceReport now = wait_for_all(driver);
+        ASSERT_EQ(now.stop, Stop::none) << delay;
+        ASSERT_EQ(now.permitted, 1U);
     }
-    EXPECT_EQ(permitted, 1U);
+}
+
+/// Models that come and go, more than the memory holds, on a device that works slowly, and on one
+/// that has stopped.
+TEST(Driver, WaitsForMemoryThatSearchesStillNeed) {
+    std::mt19937 rng(31);
+    std::vector<Record> records;
+    for (int i = 0; i < 400; ++i) records.push_back(random_record(rng, 100'000));
+    for (const bool is_stopped : {false, true}) {
+        DeviceConfig config = bench_config();
+        config.memory_lines = 1'000;
+        config.cycles_per_line = 20;
+        EmulatedDevice device = emulated_device(config).value();
+        Driver driver = open_device(port_of(device)).value();
+        const SlotNumber tool = load_tool(driver, holder).value();
+        if (is_stopped) halt(device.state, Stop::host_silent, 1);
+        uint32_t count = 0;
+        for (; count < 20; ++count) {
+            const auto work = load_records(driver, Side::work, records);
+            ASSERT_TRUE(work) << count;
+            EXPECT_TRUE(push(driver, {{0, 0, 900}, {9, 9, 900}, {{tool, *work, 1.0}}}));
+            unload(driver, *work);
+        }
+        if (is_stopped) {
+            recover(driver);
+            const SlotNumber work = load_records(driver, Side::work, records).value();
+            EXPECT_EQ(push(driver, {{0, 0, 900}, {9, 9, 900}, {{tool, work, 1.0}}}).value(), 1U);
+            count = 1;
+        }
+        EXPECT_EQ(wait_for_all(driver).permitted, count);
+    }
 }
 
 TEST(Driver, FeelsForTheHostWhileASlowMemoryTakesItsLines) {
@@ -361,9 +410,9 @@ TEST(Driver, FeelsForTheHostWhileASlowMemoryTakesItsLines) {
     driver.port.write(address_of(Register::watchdog), 50'000);
     const SlotNumber tool = load_tool(driver, holder).value();
     const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
-    EXPECT_GT(device.state.cycle, 100'000U);
     EXPECT_EQ(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}).value(), 1U);
     EXPECT_EQ(wait_for_all(driver).permitted, 1U);
+    EXPECT_GT(device.state.cycle, 100'000U);
 }
 
 TEST(Driver, GivesTheLinesOfAStockBackWhenItIsTakenOut) {

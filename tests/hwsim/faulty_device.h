@@ -57,7 +57,7 @@ inline void expect_recovers(TestDevice& device) {
     EXPECT_EQ(device.permitted(), permitted);
     EXPECT_EQ(device.read(Register::next_seq), permitted + 1);
     device.set_models({tool}, row_of_posts());
-    device.push_in_time(along_the_row(permitted + 1));
+    device.push(along_the_row(permitted + 1));
     EXPECT_TRUE(device.finish());
     EXPECT_EQ(device.permitted(), permitted + 1);
     EXPECT_EQ(device.reason(), Stop::none);

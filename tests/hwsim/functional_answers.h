@@ -36,8 +36,8 @@ inline void expect_the_functional_answers(uint32_t seed, const DeviceConfig& con
         const bool measures = round % 2 == 0;
         for (int i = 0; i < 40; ++i) {
             const SegmentKind kind = measures ? SegmentKind::measure : SegmentKind::permit;
-            device.push_in_time(question(measures ? 1 : device.read(Register::next_seq),
-                                         random_way(rng, 2 * reach), rng() % 20, kind));
+            device.push(question(measures ? 1 : device.read(Register::next_seq),
+                                 random_way(rng, 2 * reach), rng() % 20, kind));
             device.clock(rng() % 50);
             if (device.has_status(status_stopped)) break;
         }

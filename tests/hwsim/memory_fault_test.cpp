@@ -26,10 +26,10 @@ TEST(MemoryFault, AMemoryThatTakesNoLinesStopsTheDevice) {
     TestDevice device = working_device();
     device.clock(5'000);
     device.state.memory.stalled = true;
-    ASSERT_TRUE(store(device.state, 4'000, {}));
+    device.post_copy(4'000, 1);
     device.clock(1'000);
     EXPECT_EQ(device.reason(), Stop::none);
-    device.clock(2);
+    device.clock(25);
     expect_stopped(device, Stop::memory_stalled);
     device.state.memory.stalled = false;
     expect_recovers(device);
@@ -40,7 +40,7 @@ TEST(MemoryFault, ALineThatWaitsForReadsIsNoStall) {
     config.memory_limit = 400;
     config.cycles_per_line = 40;
     TestDevice device(config);
-    ASSERT_TRUE(store(device.state, 4'000, {}));
+    device.post_copy(4'000, 1);
     for (int cycle = 0; cycle < 2'000; ++cycle) {
         if (accepts(device.state.memory))
             device.state.memory.asked.push({{.valid = true, .run = 99}, device.state.cycle});

@@ -182,5 +182,36 @@ TEST(StockModel, IsEmptyWhenEverythingIsCut) {
     EXPECT_EQ(answer.stop, Stop::none);
 }
 
+/// Over the last epoch and on: every answer is that of a model made afresh, and no line is lost.
+TEST(StockModel, GoesOnAfterTheLastEpoch) {
+    std::mt19937 rng(21);
+    Workshop shop(2.0);
+    shop.take_over();
+    shop.model.epoch = UINT32_MAX - 3;
+    for (int round = 0; round < 8; ++round) {
+        shop.cut(rng);
+        const StockUpdate done = shop.take_over();
+        EXPECT_EQ(done.epoch, round < 3 ? UINT32_MAX - 2 + static_cast<uint32_t>(round)
+                                        : static_cast<uint32_t>(round) - 2);
+        for (const LineRun& run : done.released) give_back(shop.space, run);
+        Workshop fresh(2.0);
+        fresh.model = stock_model(cells_of(shop.stock));
+        fresh.stock = shop.stock;
+        const StockUpdate other = fresh.take_over();
+        for (int i = 0; i < 30; ++i) {
+            const Segment way = segment_over_the_stock(rng);
+            const Answer a = shop.ask(way, done.header, done.epoch);
+            ASSERT_EQ(a.stop, Stop::none);
+            ASSERT_EQ(a.squared, fresh.ask(way, other.header, other.epoch).squared);
+        }
+    }
+    uint32_t used = 0;
+    for (const LineRun& run : lines_of(shop.model)) used += run.count;
+    uint32_t returned = 0;
+    for (uint32_t length = 1; length < shop.space.returned.size(); ++length)
+        returned += length * static_cast<uint32_t>(shop.space.returned[length].size());
+    EXPECT_EQ(used + returned, shop.space.next - 10);
+}
+
 } // namespace
 } // namespace hwsim

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include "hwsim/coprocessor.h"
 #include "hwsim/search.h"
 #include "tests/hwsim/random_models.h"
@@ -17,19 +19,39 @@ inline DeviceConfig small_config() {
             .memory_latency = 11,
             .memory_queue = 4,
             .write_queue = 4,
+            .host_latency = 7,
+            .host_cycles_per_line = 2,
+            .host_queue = 3,
             .memory_limit = 1000};
 }
 
-/// A device on a test bench: registers and memory, and the clock.
+/// A device on a test bench: registers, the memory of the host, and the clock.
 struct TestDevice {
+    static constexpr uint32_t log2_ring_size = 6, ring_size = 1U << log2_ring_size;
+
     DeviceConfig config = small_config();
     CoprocessorState state;
     LineSpace space;
     std::vector<Retired> retired; // all that was
+    uint32_t tail = 0;            // of the ring
 
     explicit TestDevice(const DeviceConfig& with = small_config())
         : config(checked(with).value()), state(power_up(config)), space{.end = with.memory_lines} {
+        open();
+    }
+    void open() {
+        constexpr uint64_t base = HostMemory::address_of(0);
+        write(Register::ring_base_low, static_cast<uint32_t>(base));
+        write(Register::ring_base_high, static_cast<uint32_t>(base >> 32));
+        write(Register::ring_log2_size, log2_ring_size);
+        // The ring, and behind it what is copied to each line of the memory.
+        state.shared.lines.resize(ring_size + config.memory_lines);
+        tail = 0;
         write(Register::control, control_enable);
+    }
+    void reset() {
+        write(Register::control, control_reset);
+        open();
     }
 
     uint32_t read(Register r) { return hwsim::read(state, config, address_of(r)); }
@@ -57,41 +79,65 @@ struct TestDevice {
         return false;
     }
 
-    void push(const Segment& segment) {
-        const SegmentWords words = words_of(segment);
-        for (uint32_t i = 0; i < segment_words; ++i)
-            hwsim::write(state, config, address_of(Register::segment) + 4 * i, words[i]);
-        write(Register::segment_push, 0);
+    /// Writes lines to the ring, and rings the doorbell.
+    void post(std::vector<Line> lines) {
+        for (Line& line : lines) {
+            seal(line, tail);
+            state.shared.lines[tail++ % ring_size] = line;
+        }
+        write(Register::ring_tail, tail);
     }
-    /// The same when there is room for it.
-    void push_in_time(const Segment& segment) {
-        while (has_status(status_fifo_full)) clock();
-        push(segment);
+    void post(const Segment& entry) { post(descriptor_of({&entry, 1})); }
+    /// Until all that was posted is carried out, or the device is stopped.
+    void wait_for_ring() {
+        for (int patience = 1'000'000; patience > 0 && !is_idle(state.ring); --patience) {
+            if (has_status(status_stopped)) return;
+            clock();
+        }
     }
+    void push(std::span<const Segment> entries) {
+        post(descriptor_of(entries));
+        wait_for_ring();
+    }
+    void push(const Segment& entry) { push({&entry, 1}); }
 
+    /// What is copied to a line of the memory.
+    Line& image_of(uint32_t line) { return state.shared.lines[ring_size + line]; }
+    void post_copy(uint32_t line, uint32_t count) {
+        post({descriptor_of(LineCopy{HostMemory::address_of(ring_size + line), line, count})});
+    }
     void store(const std::vector<AddressedLine>& lines) {
-        for (const AddressedLine& line : lines)
-            while (!hwsim::store(state, line.address, line.line)) clock();
+        for (const AddressedLine& line : lines) {
+            image_of(line.address) = line.line;
+            post_copy(line.address, 1);
+            wait_for_ring();
+        }
     }
 
-    /// Brings a model into the memory, and returns its header.
-    uint32_t load(Side side, const std::vector<Record>& records, uint32_t leaf_size = 8,
-                  uint32_t epoch = 1) {
+    /// The lines of a model, the last of which is its header.
+    std::vector<AddressedLine> lines_of(Side side, const std::vector<Record>& records,
+                                        uint32_t leaf_size = 8, uint32_t epoch = 1) {
         ModelWriter writer{.space = &space, .side = side, .epoch = epoch};
         Branch root;
         if (!records.empty()) root = add_tree(writer, records, leaf_size).value();
-        const uint32_t header = add_header(writer, root).value();
-        store(writer.lines);
-        return header;
+        EXPECT_TRUE(add_header(writer, root));
+        return writer.lines;
     }
-    /// Puts a model into a slot, by the FIFO.
+    /// Brings a model into the memory, and returns its header.
+    uint32_t load(Side side, const std::vector<Record>& records, uint32_t leaf_size = 8,
+                  uint32_t epoch = 1) {
+        const std::vector<AddressedLine> lines = lines_of(side, records, leaf_size, epoch);
+        store(lines);
+        return lines.back().address;
+    }
+    /// Puts a model into a slot, after the lines that were stored before.
     void set_model(uint8_t slot, uint32_t header, uint32_t epoch = 1) {
-        push_in_time({.sequence = read(Register::next_seq),
-                      .kind = SegmentKind::model,
-                      .work_slot = slot,
-                      .last = false,
-                      .work_epoch = epoch,
-                      .model_header = header});
+        push({.sequence = read(Register::next_seq),
+              .kind = SegmentKind::model,
+              .work_slot = slot,
+              .last = false,
+              .work_epoch = epoch,
+              .model_header = header});
     }
     void set_models(const std::vector<Record>& tools, const std::vector<Record>& works) {
         set_model(0, load(Side::tool, tools));

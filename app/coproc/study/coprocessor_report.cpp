@@ -53,10 +53,10 @@ using hwsim::Counter;
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, hwsim::counter_count> counter_names = {
-    "cycles",        "busy",       "queries",       "nodes",       "splits",
-    "box_tests",     "pair_tests", "node_hits",     "node_misses", "record_hits",
-    "record_misses", "lines_read", "lines_written", "wait_memory", "wait_port",
-    "wait_retire",   "missed",     "deepest",       "least_slack", "longest"};
+    "cycles",        "busy",        "queries",     "nodes",       "splits",        "box_tests",
+    "pair_tests",    "node_hits",   "node_misses", "record_hits", "record_misses", "lines_read",
+    "lines_written", "wait_memory", "wait_port",   "wait_retire", "missed",        "deepest",
+    "least_slack",   "longest",     "host_lines"};
 
 /// Latencies of the blocks with questions, sorted, s.
 std::vector<double> latencies(const CoprocessorResult& result) {
@@ -124,7 +124,9 @@ Json config_json(const CoprocessorResult& result) {
               {"fifo_depth", d.fifo_depth},
               {"memory_lines", d.memory_lines},
               {"memory_latency", d.memory_latency},
-              {"cycles_per_line", d.cycles_per_line}}},
+              {"cycles_per_line", d.cycles_per_line},
+              {"host_latency", d.host_latency},
+              {"host_cycles_per_line", d.host_cycles_per_line}}},
             {"control",
              {{"servo_period", c.servo.period},
               {"io_latency", c.servo.latency},
