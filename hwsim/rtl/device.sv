@@ -35,6 +35,23 @@ package device;
     path_t path;
   } query_t;
 
+  // An entry of the FIFO: a path and a pair of models, or a model for a slot.
+  typedef enum logic [1:0] {PERMIT, MEASURE, MODEL} kind_t;
+  typedef struct packed {
+    logic [63:0] lines;  // that were copied before it
+    logic [63:0] asked;  // cycle in which its descriptor was asked for
+    logic [31:0] deadline;
+    logic is_timed, last;
+    logic [25:0] model_header;
+    logic [31:0] work_epoch;
+    logic [22:0] threshold;
+    path_t path;
+    logic [4:0] work_slot, tool_slot;
+    kind_t kind;
+    logic [31:0] sequence_number;
+  } entry_t;
+  localparam int ENTRY_BITS = 435;
+
   // What a pair is divided into: parts of the tool, of the work, of the path; or nothing.
   typedef enum logic [1:0] {TOOL, WORK, WAY, NONE} division_t;
 
@@ -45,7 +62,7 @@ package device;
 
   typedef enum logic [3:0] {
     NO_STOP, VIOLATION, OUT_OF_RANGE, SEQUENCE, FIFO_OVERRUN, MODEL_MISSING, MODEL_CHANGED,
-    BAD_CHECK, BAD_ADDRESS, STACK_OVERFLOW, TOO_LONG, MEMORY_STALLED, HOST_SILENT
+    BAD_CHECK, BAD_ADDRESS, STACK_OVERFLOW, TOO_LONG, MEMORY_STALLED, HOST_SILENT, BAD_DESCRIPTOR
   } stop_t;
 
   typedef struct packed {

@@ -21,9 +21,10 @@ LIMITS = {
     "check_unit": ((5_700, 2_400, 0, 0), (3_400, 920, 0, 0)),
     "line_cache": ((3_700, 1_400, 0, 16), (1_200, 320, 0, 16)),
     "search_thread": ((7_700, 3_250, 0, 0), (4_500, 3_250, 0, 0)),
+    "permit_unit": ((4_000, 1_350, 4, 5), (1_550, 1_200, 2, 0)),
 }
 FAMILIES = {"ECP5": "synth_ecp5", "Xilinx 7": "synth_xilinx -family xc7 -flatten"}
-FILES = ("device", "path_unit", "gap_unit", "check_unit", "line_cache", "search_thread", "search_element")
+FILES = ("device", "path_unit", "gap_unit", "check_unit", "line_cache", "search_thread", "search_element", "permit_unit")
 # Cells, and how many of a column they are.
 COLUMNS = (
     {r"LUT\d": 1, r"SRL.*": 1, r"RAM(32|64|128)X?.*": 2, r"TRELLIS_DPR16X4": 2, r"CCU2C": 2},

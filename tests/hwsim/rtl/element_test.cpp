@@ -155,21 +155,9 @@ public:
         const uint32_t shown = circuit_.answer_thread;
         if (!was_started_[shown]) return;
         const Answer& answer = element_.threads[shown].answer;
-        const auto is_field = [&](unsigned at, unsigned bits, uint64_t value) {
-            return field(circuit_.answer, at, bits) == value;
-        };
-        ASSERT_TRUE(is_field(0, 7, answer.counts.deepest)) << cycle_;
-        ASSERT_TRUE(is_field(7, 32, answer.counts.pair_tests)) << cycle_;
-        ASSERT_TRUE(is_field(39, 32, answer.counts.box_tests)) << cycle_;
-        ASSERT_TRUE(is_field(71, 32, answer.counts.splits)) << cycle_;
-        ASSERT_TRUE(is_field(103, 32, answer.counts.nodes)) << cycle_;
-        ASSERT_TRUE(is_field(135, 13, answer.sample)) << cycle_;
-        ASSERT_TRUE(is_field(148, 28, answer.work_record)) << cycle_;
-        ASSERT_TRUE(is_field(176, 28, answer.tool_record)) << cycle_;
-        ASSERT_TRUE(is_field(204, 51, answer.squared)) << cycle_;
-        ASSERT_TRUE(is_field(255, 1, answer.found)) << cycle_;
-        ASSERT_TRUE(is_field(256, 27, answer.at_line)) << cycle_;
-        ASSERT_TRUE(is_field(283, 4, static_cast<uint64_t>(answer.stop))) << cycle_;
+        Fields fields;
+        fields.put(answer);
+        ASSERT_TRUE(holds(circuit_.answer, fields)) << cycle_;
     }
 
 private:
@@ -217,14 +205,8 @@ private:
         circuit_.start = in.start != nullptr;
         if (!in.start) return;
         circuit_.start_thread = in.start->thread;
-        const Query& query = in.start->query;
         Fields fields;
-        fields.put(query.segment);
-        fields.put(query.tool_header, 26);
-        fields.put(query.work_header, 26);
-        fields.put(query.tool_epoch, 32);
-        fields.put(query.work_epoch, 32);
-        fields.put(static_cast<int64_t>(query.limit), 51);
+        fields.put(in.start->query);
         set(circuit_.query, fields);
     }
 

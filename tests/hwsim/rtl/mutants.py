@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Plants faults in a copy of the circuit, one at a time, and expects the lockstep tests to fail with each.
+"""Plants faults in a copy of the circuit, one at a time, and expects the lockstep tests, or the proof about permits, to
+fail with each.
 
 Usage: mutants.py SOURCE_DIRECTORY [FAULT...]      (numbers, from 1)
 """
@@ -42,6 +43,18 @@ FAULTS = [
     ("search_element.sv", "response_is_intact && !is_stale[i]", "response_is_intact"),
     ("search_element.sv", "looks && !flush && !reset", "looks && !reset"),
     ("search_element.sv", "push_place |= stack_sizes[7*i+:6]", "push_place |= {2'b0, stack_sizes[7*i+:4]}"),
+    ("permit_unit.sv", "retires = enable && dispatched != 0", "retires = dispatched != 0"),
+    ("permit_unit.sv", "retire_stop == device::NO_STOP && enable", "retire_stop == device::NO_STOP"),
+    ("permit_unit.sv", "lines_written < waiting.lines", "lines_written + 64'd1 < waiting.lines"),
+    ("permit_unit.sv", "work_model[57:26] != waiting.work_epoch", "work_model[57:26] > waiting.work_epoch"),
+    ("permit_unit.sv", " || next_sequence_now == 0)", ")"),
+    ("permit_unit.sv", "entry_valid && !flush", "entry_valid"),
+    ("permit_unit.sv", "first.kind == device::PERMIT && is_searched_answer", "first.last && is_searched_answer"),
+    ("permit_unit.sv", "reason_sequence = permitted_now + 32'd1", "reason_sequence = permit_sequence + 32'd1"),
+    ("permit_unit.sv", "waiting.threshold} + 25'd3", "waiting.threshold} + 25'd2"),
+    ("permit_unit.sv", "has_model_now = is_cleared ? '0 : has_model", "has_model_now = has_model"),
+    ("permit_unit.sv", "$signed(slack) < $signed(least_slack)", "slack < least_slack"),
+    ("permit_unit.sv", "number_of(release_element, release_thread)] = 1'b0", "number_of(release_element, 4'd0)] = 1'b0"),
 ]
 TESTS = ("hwsim_rtl_unit_test", "hwsim_rtl_element_test")
 
@@ -62,14 +75,18 @@ def plant(path, text, replacement):
     path.write_text(source.replace(text, replacement, 1), encoding="utf-8")
 
 
-def is_noticed(build):
-    """Whether a test fails; what does not compile is no fault to notice."""
+def is_noticed(source, circuit, build, file=None):
+    """Which test fails; what does not compile is no fault to notice."""
     expect_success(run(["ninja", "-C", build, *TESTS]))
     for test in TESTS:
         result = run([f"{build}/tests/hwsim/rtl/{test}", "--gtest_brief=1", "--gtest_fail_fast"])
         failed = re.findall(r"\[  FAILED  \] (\S+) ", result.stdout)
         if result.returncode != 0:
             return failed[0] if failed else f"{test} ends with {result.returncode}"
+    if file == "permit_unit.sv":
+        proof = pathlib.Path(source, "tests/hwsim/rtl/permit_proof.py")
+        if run([sys.executable, "-B", proof, source, circuit]).returncode != 0:
+            return proof.name
     return None
 
 
@@ -81,12 +98,12 @@ def main(source, *chosen):
         shutil.copytree(original, circuit)
         expect_success(run(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                             "-DFEELER_UNITY=ON", "-DFEELER_TESTS=ON", f"-DFEELER_CIRCUIT={circuit}"]))
-        if is_noticed(build):
+        if is_noticed(source, circuit, build):
             sys.exit("the tests fail without a fault")
         for number in numbers:
             name, text, replacement = FAULTS[number - 1]
             plant(circuit / name, text, replacement)
-            test = is_noticed(build)
+            test = is_noticed(source, circuit, build, name)
             print(f"{number:2} {name}: {replacement}: {test or 'NOT NOTICED'}", flush=True)
             if not test:
                 unnoticed.append(number)
