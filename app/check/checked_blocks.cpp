@@ -254,8 +254,11 @@ uint32_t CheckedBlocks::line(size_t i) const {
 
 void CheckedBlocks::push_back(const CheckedBlock& block) {
     if (size_ % chunk_size == 0) {
+        // With room for a chunk like the last one: memory that grows step by step leaves gaps.
+        const size_t like_last = chunks_.empty() ? 0 : chunks_.back().bytes.size();
         if (!chunks_.empty()) chunks_.back().bytes.shrink_to_fit();
         chunks_.emplace_back();
+        chunks_.back().bytes.reserve(like_last + like_last / 16);
         chunks_.back().starts.reserve(chunk_size);
     }
     Chunk& chunk = chunks_.back();
