@@ -129,6 +129,7 @@ struct Interpreter::Scratch {
     Statement statement{};
     BlockCommands result{};
     std::string line_text{};
+    std::vector<uint32_t> sources_with_known_lines{}; // see check_returns
     BeforeBlock before{};
     std::vector<AssignmentUndo> undos{};
     std::vector<Value> values{};
@@ -151,9 +152,60 @@ struct Interpreter::Scratch {
     bool asks_for_stop(const InterpreterState& state) const {
         return state.next_block % 1024 == 0 && environment.limits.is_stopped;
     }
+    bool has_known_lines(uint32_t source) const {
+        return std::find(sources_with_known_lines.begin(), sources_with_known_lines.end(), source)
+               != sources_with_known_lines.end();
+    }
     core::SourceSpan span_in_file(core::SourceSpan where) const;
     void position_in_lines();
 };
+
+/// The line of a text that ends at a CR without LF, though more follows; 0 if there is none.
+size_t line_with_lone_return(std::string_view text) {
+    size_t line = 1;
+    for (size_t at = 0; (at = text.find_first_of("\r\n", at)) != std::string_view::npos;
+         ++line, ++at) {
+        if (text[at] == '\n') continue;
+        if (at + 1 == text.size()) return 0;
+        if (text[at + 1] != '\n') return line;
+        ++at;
+    }
+    return 0;
+}
+
+/// Whether a program is known to have the lines that the control sees. Grbl ends a line at CR.
+/// LinuxCNC takes it for a blank and reads on in the same line. Of other controls it is not known,
+/// unless all lines of the file end so.
+core::Result<void> check_returns(const Program& program, DialectId dialect) {
+    if (dialect == DialectId::grbl || program.windows) return {};
+    if (dialect != DialectId::linuxcnc && program.text.find('\n') == std::string::npos) return {};
+    const size_t line = line_with_lone_return(program.text);
+    if (line == 0) return {};
+    core::Error error{
+        core::ErrorCode::syntax, {.line = static_cast<uint32_t>(line)}, {}, program.file};
+    error.message = fmt::format(
+        "the line ends at a carriage return without a line feed, and {}; save the program with the "
+        "same end of line everywhere",
+        dialect == DialectId::linuxcnc ? "LinuxCNC takes the next line for a part of it"
+                                       : "controls may take the next line for a part of it");
+    return tl::unexpected(std::move(error));
+}
+
+/// Notes whether LinuxCNC holds back the last straight feed, to join it with the next. Commands
+/// that it carries out at once do not make it.
+void note_held_feed(ModalState& modal, const BlockCommands& block) {
+    for (const CanonicalCommand& command : block.commands) {
+        if (std::holds_alternative<StraightFeed>(command))
+            modal.holds_feed = true;
+        else if (!std::holds_alternative<NameTool>(command)
+                 && !std::holds_alternative<SelectPlane>(command)
+                 && !std::holds_alternative<SetPathMode>(command)
+                 && !std::holds_alternative<EnableOverride>(command)
+                 && !std::holds_alternative<UseSpindleMode>(command)
+                 && !std::holds_alternative<Message>(command))
+            modal.holds_feed = false;
+    }
+}
 
 /// The scratch data for the active language. Siemens controls have two languages.
 Interpreter::Scratch& Interpreter::Scratch::speaking(const InterpreterState& state) {
@@ -173,6 +225,11 @@ core::Result<bool> Interpreter::Scratch::read_line(InterpreterState& state) {
             !repeated.empty() && state.next.line == repeated.back().last + 1)
             state.next.line = repeated.back().statement;
         const Program& program = library.program(state.next.source);
+        if (!has_known_lines(state.next.source)) {
+            if (auto known = check_returns(program, dialect.id); !known)
+                return tl::unexpected(std::move(known).error());
+            sources_with_known_lines.push_back(state.next.source);
+        }
         FEELER_TRY(const auto found, program.find_line(state.next.line));
         if (!found) return false;
         const uint32_t number = state.next.line++;
@@ -380,6 +437,7 @@ core::Result<bool> Interpreter::Scratch::try_next(InterpreterState& state) {
         return core::fail(ErrorCode::io, "the program was stopped", {.line = block.line});
     if (auto done = run_block(state); !done) return tl::unexpected(std::move(done).error());
     ++state.next_block;
+    if (dialect.id == DialectId::linuxcnc) note_held_feed(state.modal, result);
     if (std::any_of(result.commands.begin(), result.commands.end(), is_motion)) note_motion(state);
     if (auto checked = detect_endless_loop(state, here, dialect); !checked)
         return tl::unexpected(std::move(checked).error());
@@ -409,6 +467,7 @@ core::Result<bool> Interpreter::Scratch::read_next(InterpreterState& state) {
 /// Executes a line that is only a straight move; otherwise returns false and changes nothing. It
 /// cannot fail, so nothing is saved.
 bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
+    if (!has_known_lines(state.next.source)) return false;
     if (!language.read_plain || environment.counts_smallest_steps || state.points.counts_steps
         || !environment.wrapped_axes.empty() || state.next_block >= environment.limits.blocks
         || asks_for_stop(state) || !moves_quickly(state))
@@ -427,6 +486,7 @@ bool Interpreter::Scratch::try_quick_move(InterpreterState& state) {
     if (dialect.decimal_points_matter) note_points(block, state, result);
     ++state.next.line;
     ++state.next_block;
+    if (dialect.id == DialectId::linuxcnc) note_held_feed(state.modal, result);
     note_motion(state);
     remember_words(state);
     return true;

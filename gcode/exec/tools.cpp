@@ -606,6 +606,13 @@ core::Result<void> name_tool(Execution& execution) {
                           "M61 needs a Q word, the number of the tool in the spindle",
                           execution.statement.of(ModalGroup::tool_change)->word->span);
     FEELER_TRY(const int tool, whole_number(*word));
+    // emccanon.cc of LinuxCNC 2.9: CHANGE_TOOL_NUMBER empties the list of feeds that are still to
+    // be joined, where other commands make them first.
+    if (execution.modal().holds_feed)
+        return core::fail(ErrorCode::unsupported,
+                          "LinuxCNC leaves out the straight feed before this M61; program G4 P0 "
+                          "between them",
+                          execution.statement.of(ModalGroup::tool_change)->word->span);
     execution.modal().tool = ToolNumber(tool);
     execution.emit(NameTool{tool == 0 ? std::nullopt : std::optional(ToolNumber(tool))});
     return {};

@@ -134,6 +134,16 @@ core::Result<void> LineWindows::check(const Window& window) const {
             refusal(ErrorCode::syntax, nul_bytes_error(text),
                     window.first_line + static_cast<uint64_t>(after - window.starts.begin()) - 1));
     }
+    // With the program as a whole, this depends on the control (gcode/exec/interpreter.cpp).
+    for (size_t at = 0; (at = text.find('\r', at)) != std::string_view::npos; ++at) {
+        if (at + 1 == text.size() || text[at + 1] == '\n') continue;
+        const auto after = std::upper_bound(window.starts.begin(), window.starts.end(), at);
+        return tl::unexpected(
+            refusal(ErrorCode::syntax,
+                    "has a carriage return without a line feed, where a control may read on in the "
+                    "same line; save it with the same end of line everywhere",
+                    window.first_line + static_cast<uint64_t>(after - window.starts.begin()) - 1));
+    }
     const size_t controls = count_stray_controls(text);
     if (looks_binary(controls, window.text.size()))
         return tl::unexpected(

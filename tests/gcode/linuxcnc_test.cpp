@@ -97,6 +97,30 @@ TEST(Linuxcnc, TheToolInTheSpindleCanBeNamed) {
     EXPECT_THAT(refused("M61"), HasSubstr("M61 needs a Q word"));
 }
 
+/// It keeps a straight feed back to join it with the next, and M61 drops it.
+TEST(Linuxcnc, DoesNotMakeAFeedBeforeM61) {
+    EXPECT_THAT(refused("G1 F100 X5\nM61 Q3"), HasSubstr("leaves out the straight feed"));
+    EXPECT_THAT(refused("G1 F100 X5\nG18\nM61 Q3"), HasSubstr("leaves out the straight feed"));
+    EXPECT_THAT(refused("G1 F100 X5 Y1\nX6\n(and)\nM61 Q3"), HasSubstr("leaves out"));
+    for (const char* between : {"G4 P0", "G0 X6", "G2 X6 I0.5"})
+        EXPECT_EQ(error_of("G1 F100 X5\n" + std::string(between) + "\nM61 Q3", DialectId::linuxcnc),
+                  "")
+            << between;
+    EXPECT_THAT(traced("M61 Q3\nG1 F100 X5"), HasSubstr("straight_feed"));
+}
+
+/// LinuxCNC takes a lone carriage return for a blank, Grbl for the end of a line.
+TEST(Linuxcnc, ReadsOnBehindALoneCarriageReturn) {
+    EXPECT_THAT(refused("G0 X1\nG0 Z60\rX160\n"), HasSubstr("carriage return"));
+    EXPECT_THAT(refused("; up\rG0 Z60\nG0 X160\n"), HasSubstr("carriage return"));
+    EXPECT_THAT(refused("G0 X1\rG0 X2\r"), HasSubstr("carriage return"));
+    EXPECT_EQ(traced("G0 X1\r\nG0 X2\r"),
+              "straight_traverse x=1 y=0 z=0\nstraight_traverse x=2 y=0 z=0\n");
+    EXPECT_THAT(error_of("O1\nG0 X1\rG0 X2\n", DialectId::fanuc), HasSubstr("carriage return"));
+    EXPECT_EQ(error_of("O1\rG0 X1\rG0 X2\rM30\r", DialectId::fanuc), "");
+    EXPECT_EQ(error_of("G21\nG0 X1\rG0 X2\n", DialectId::grbl), "");
+}
+
 TEST(Linuxcnc, ParametersShowTheStateOfTheControl) {
     EXPECT_THAT(traced("G55 G0 X3\nG0 Y#5220 Z#<_x>"), HasSubstr("x=3 y=2 z=3\n"));
     EXPECT_THAT(traced("#5241=7\nG55 G0 X0 Y#<_metric>\nG0 X#<_coord_system>"),
