@@ -99,7 +99,11 @@ void Guard::follow_operator() {
     if (!is_latched_) return;
     is_latched_ = false;
     feeler_store(&ring_.latched, 0);
-    if (tell) tell("Feeler: the violation is cleared.");
+    const bool has_motions = feeler_load(&ring_.dropped) < feeler_load(&ring_.written);
+    if (tell)
+        tell(check_.is_refused() && has_motions
+                 ? "Feeler: the violation is cleared. Abort the program to go on."
+                 : "Feeler: the violation is cleared.");
 }
 
 bool Guard::may_permit(const feeler_segment& motion) {

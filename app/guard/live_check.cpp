@@ -308,6 +308,8 @@ core::Result<void> LiveCheck::place(const LiveMotion& motion) {
         if (motion.follows_part != 0 && !waiting_.empty()
             && waiting_.front().queued.number == motion.follows)
             make_part(waiting_.front().queued, stopped_at);
+        // What begins behind them was not reached.
+        if (!waiting_.empty()) judge_.return_to(waiting_.front().reached);
         waiting_.clear();
         ahead_ = *made_;
         is_refused_ = false;
@@ -320,6 +322,7 @@ core::Result<void> LiveCheck::place(const LiveMotion& motion) {
                           "It does not begin where the motion before it ends.");
     // The machine was at rest and was then moved in another way, such as by hand.
     catch_up(motion.number, waiting_.size());
+    judge_.begin_retreat();
     put_at(*ahead_, position);
     put_at(*made_, position);
     return {};
@@ -366,7 +369,8 @@ LiveAnswer LiveCheck::refused(LiveAnswer answer) {
 }
 
 LiveAnswer LiveCheck::permitted(const LiveMotion& queued, const LiveMotion& checked) {
-    waiting_.push_back({queued, checked});
+    waiting_.push_back({queued, checked, judge_.reached()});
+    follows_probe_ = is_probing(checked);
     return {.may_move = true};
 }
 
@@ -414,8 +418,16 @@ LiveAnswer LiveCheck::judge(const LiveMotion& queued) {
     if (is_probing(motion))
         if (std::string why = judge_.problem_beyond_contact(events, *ahead_); !why.empty())
             return refused({.reason = std::move(why)});
+    const bool follows_probe = std::exchange(follows_probe_, false);
+    const core::SimulatorState before = follows_probe ? *ahead_ : core::SimulatorState();
     LiveAnswer answer = judge_.judge(events, *ahead_);
-    return answer.may_move ? permitted(queued, motion) : refused(std::move(answer));
+    if (answer.may_move) return permitted(queued, motion);
+    // At the contact the tip is rarely where the stock is said to begin.
+    if (follows_probe && !is_probing(motion)) {
+        *ahead_ = before;
+        if (judge_.judge_retreat(events, 0.0, *ahead_).may_move) return permitted(queued, motion);
+    }
+    return refused(std::move(answer));
 }
 
 LiveAnswer LiveCheck::judge_retreat(const LiveMotion& queued) {

@@ -35,8 +35,8 @@ public:
     /// loses no clearance, without cutting. All along it, no pair of bodies is nearer to each other
     /// than at its start, or at an earlier one since the violation, by more than 0.01 mm, unless it
     /// stays 10 mm apart and twice its allowance.
-    /// Straight up it may leave the stock in any case: a guard that was started anew does not know
-    /// what was cut.
+    /// Straight up, a tool that is nowhere wider than higher up may leave the stock in any case: a
+    /// guard that was started anew does not know what was cut.
     LiveAnswer judge_retreat(const LiveMotion& queued);
 
     /// Whether the motions that the control has queued cannot move any more, after a refusal.
@@ -54,7 +54,8 @@ public:
 
 private:
     struct Permitted {
-        LiveMotion queued, checked; // as the control has queued it, and with_corner()
+        LiveMotion queued, checked;        // as the control has queued it, and with_corner()
+        MotionJudge::Reached reached = {}; // by retreats up to its start
     };
 
     std::string begin(const LiveMotion& motion);
@@ -80,6 +81,7 @@ private:
     std::optional<core::SimulatorState> made_;  // after those that have been made
     std::deque<Permitted> waiting_;             // what is in `ahead_` and not in `made_`
     bool is_refused_ = false;                   // until the control drops what it has queued
+    bool follows_probe_ = false;                // the last motion was a probing move
 };
 
 } // namespace app

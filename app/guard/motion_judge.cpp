@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/sim/tool_assembly.h"
+
 namespace app {
 namespace {
 
@@ -70,6 +72,30 @@ std::vector<core::Event> before_motion(const std::vector<core::Event>& events) {
         break;
     }
     return before;
+}
+
+/// Whether a tool leaves what it has cut when it goes straight up: flutes and shank get no narrower
+/// upwards, or it only drills. Above the head of a T-slot cutter there may be stock.
+bool leaves_its_cut_upwards(const core::ToolAssembly& tool) {
+    constexpr double most_undercut = 0.25; // mm
+    const auto shape = std::find_if(
+        core::tool_shapes().begin(), core::tool_shapes().end(),
+        [&](const core::ToolShapeEntry& one) { return one.shape == tool.description.shape; });
+    if (shape != core::tool_shapes().end() && shape->only_drills) return true;
+    std::vector<core::ProfileElement> elements;
+    for (const core::ToolPart& part : tool.parts)
+        if (core::is_below_holder(part.kind))
+            elements.insert(elements.end(), part.profile.elements.begin(),
+                            part.profile.elements.end());
+    std::sort(elements.begin(), elements.end(),
+              [](const auto& a, const auto& b) { return a.z1 + a.margin < b.z1 + b.margin; });
+    double widest = 0.0;
+    for (const core::ProfileElement& element : elements) {
+        if (element.r1 + element.margin < widest - most_undercut) return false;
+        widest = std::max({widest, element.r0 + element.margin, element.r1 + element.margin});
+        if (element.r1 + element.margin < widest - most_undercut) return false;
+    }
+    return true;
 }
 
 } // namespace
@@ -172,13 +198,19 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
     }
     // Out of what it has cut, or of what the set-up still takes for stock.
     const bool goes_up = goes_straight_up(events);
+    const auto held = state.tool ? setup_.tools.find(*state.tool) : setup_.tools.end();
+    const bool may_catch = held != setup_.tools.end() && !leaves_its_cut_upwards(held->second);
+    bool is_caught = false;
     const double slack = retreat_tolerance + rounding;
     const auto comes_nearer = [&](const core::PairClearance& pair) {
         const auto known = std::find_if(before.pairs.begin(), before.pairs.end(),
                                         [&](const auto& one) { return one.pair == pair.pair; });
         const bool is_known = known != before.pairs.end();
         const bool is_within = is_known && known->verdict == core::Verdict::collision;
-        if (goes_up && is_within && !pair.pair.fixture) return false;
+        if (goes_up && is_within && !pair.pair.fixture) {
+            if (!may_catch) return false;
+            is_caught = true;
+        }
         if (pair.verdict == core::Verdict::collision) return true;
         const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
         const auto best = reached(pair.pair);
@@ -193,6 +225,10 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
     if (!result.checked) return {.reason = "Its clearance cannot be proven."};
     const auto nearer = std::find_if(result.pairs.begin(), result.pairs.end(), comes_nearer);
     if (nearer == result.pairs.end()) return {.may_move = true};
+    if (is_caught)
+        return {.reason =
+                    "The tool is wider below than above, so stock above its head may hold it.",
+                .cure = "Move it out by hand, the way it went in."};
     return {.reason = fmt::format("It brings {} and {} nearer to each other.",
                                   core::part_name(setup_, nearer->pair),
                                   core::body_name(setup_, nearer->pair))};

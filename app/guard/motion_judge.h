@@ -52,12 +52,18 @@ public:
     /// Leaves the state as it is.
     std::string problem_beyond_contact(std::vector<core::Event> events, core::SimulatorState state);
 
+    /// The largest lower bounds of pairs at rest since begin_retreat.
+    using Reached = std::vector<std::pair<core::Pair, double>>;
+    const Reached& reached() const { return reached_; }
+    /// Goes back to what was reached before.
+    void return_to(Reached reached) { reached_ = std::move(reached); }
     /// Forgets the clearances that retreats have reached.
     void begin_retreat() { reached_.clear(); }
     /// Events may be made that lose no clearance, without cutting: all along them, no pair of
     /// bodies is nearer to each other than it has been at rest since begin_retreat, by more than
     /// 0.01 mm and `rounding`, unless it stays 10 mm apart and twice its allowance. Straight up
-    /// they may leave the stock in any case: nobody may know what was cut.
+    /// a tool that is nowhere wider than higher up may leave the stock in any case: nobody may
+    /// know what was cut.
     LiveAnswer judge_retreat(std::vector<core::Event> events, double rounding,
                              core::SimulatorState& state);
 
@@ -68,8 +74,7 @@ private:
     core::Setup setup_;    // measures only what a verdict needs
     core::Setup thorough_; // measures every pair
     uint32_t block_ = 0;
-    // The largest lower bounds at rest since begin_retreat.
-    std::vector<std::pair<core::Pair, double>> reached_;
+    Reached reached_;
 };
 
 } // namespace app

@@ -332,6 +332,17 @@ TEST_F(GuardedMachine, AllowsOnlyRetreatsAfterAViolation) {
     EXPECT_EQ(machine_.ring->latched, 0U);
 }
 
+TEST_F(GuardedMachine, SaysThatWhatWaitsMustBeAborted) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(54.5, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    feeler_store(&machine_.ring->cleared, uint64_t{1});
+    guard_.step();
+    EXPECT_THAT(told_.back(), HasSubstr("Abort the program"));
+    machine_.rapid(0, 0, 40);
+    EXPECT_EQ(permitted(), 1U);
+}
+
 /// A wide tolerance of the path is no leave to come nearer.
 TEST_F(GuardedMachine, LosesNoClearanceOnRetreatByRoundedCorners) {
     machine_.rapid(0, 0, 30);
@@ -774,6 +785,73 @@ TEST_F(GuardedMachine, LetsTheToolOutOfACutThatItDoesNotKnow) {
     const uint64_t up = machine_.rapid(0, 0, 30);
     check_all(other);
     EXPECT_EQ(machine_.permitted(), up);
+}
+
+/// Above the head of a T-slot cutter there may be stock.
+TEST_F(GuardedMachine, LetsNoToolOutThatIsWiderBelow) {
+    for (const char* tool :
+         {"shape = \"tslot\"\ndiameter = 20\nflute_length = 5\nneck_diameter = 8\n"
+          "neck_length = 40\nshank_diameter = 10\nstick_out = 100",
+          "shape = \"drill\"\ndiameter = 14\nflute_length = 40\nshank_diameter = 10\n"
+          "stick_out = 100",
+          "shape = \"ball\"\ndiameter = 6\nflute_length = 20\nshank_diameter = 10\n"
+          "stick_out = 100"}) {
+        const std::string flat =
+            "shape = \"flat\"\ndiameter = 10\nflute_length = 30\nstick_out = 100";
+        std::string text = setup_text;
+        text.replace(text.find(flat), flat.size(), tool);
+        const app::SetupFile setup = setup_of(text);
+        Machine machine;
+        machine.rapid(-30, 0, 30);
+        app::Guard guard(setup.setup, *machine.ring, 1.0, 0.1);
+        check_all(guard);
+        machine.abort_at_rest();
+        machine.jog(-30, 0, -10); // where an earlier guard has let it cut
+        machine.rapid(-20, 0, -10);
+        check_all(guard);
+        machine.abort_at_rest();
+        machine.jog(-30, 0, -10);
+        const uint64_t up = machine.rapid(-30, 0, 20);
+        check_all(guard);
+        EXPECT_EQ(machine.permitted() == up, std::string(tool).find("tslot") == std::string::npos)
+            << tool;
+    }
+}
+
+/// What a motion would have reached that was not made is no measure.
+TEST_F(GuardedMachine, MayGoBackAfterAChainOfRetreatsThatWasEnded) {
+    machine_.rapid(0, 0, 30);
+    machine_.rapid(54.5, 0, 20);
+    EXPECT_EQ(permitted(), 1U);
+    machine_.abort_at_rest();
+    machine_.jog(54.5, 0, 20);
+    const uint64_t first = machine_.rapid(52, 0, 20);
+    const uint64_t second = machine_.rapid(48, 0, 20);
+    EXPECT_EQ(permitted(), second);
+    machine_.abort(first, 54, 0, 20);
+    const uint64_t up = machine_.rapid(54, 0, 25);
+    EXPECT_EQ(permitted(), up);
+    machine_.move();
+    machine_.rapid(54.3, 0, 25); // nearer than at the start
+    EXPECT_EQ(permitted(), up);
+}
+
+/// The stock begins where the probe has found it, a little deeper than stated.
+TEST_F(GuardedMachine, MayGoUpFromAContactAndNotOn) {
+    machine_.next.turns_on = 0;
+    machine_.rapid(0, 0, 20);
+    const uint64_t probe = machine_.line(0, 0, -5, FEELER_PROBE);
+    EXPECT_EQ(permitted(), probe);
+    machine_.abort(probe, 0, 0, -0.3);
+    const uint64_t up = machine_.rapid(0, 0, 2);
+    EXPECT_EQ(permitted(), up);
+    EXPECT_EQ(machine_.ring->latched, 0U);
+    machine_.move();
+    const uint64_t again = machine_.line(0, 0, -5, FEELER_PROBE);
+    EXPECT_EQ(permitted(), again);
+    machine_.abort(again, 0, 0, -0.3);
+    machine_.rapid(5, 0, -0.3);
+    EXPECT_EQ(permitted(), again);
 }
 
 TEST_F(GuardedMachine, DoesNotCutOnRetreat) {
