@@ -213,14 +213,17 @@ bool Gate::handle_motion(const LinePointer& line) {
     line->number = ++last_number_;
     is_judging_ = true;
     const auto verdict = std::make_shared<LineVerdict>();
-    links_.run([verdict, number = line->number, text = line->text,
-                is_jog](LineCheck& check) { *verdict = check.judge(number, text, is_jog); },
-               [this, line, verdict, epoch = epoch_] {
-                   if (epoch != epoch_) return;
-                   is_judging_ = false;
-                   take_verdict(line, std::move(*verdict));
-                   go_on();
-               });
+    links_.run(
+        [verdict, number = line->number, text = line->text, is_jog](LineCheck& check) {
+            *verdict = check.judge(number, text, is_jog);
+            verdict->end = check.place_ahead();
+        },
+        [this, line, verdict, epoch = epoch_] {
+            if (epoch != epoch_) return;
+            is_judging_ = false;
+            take_verdict(line, std::move(*verdict));
+            go_on();
+        });
     return false;
 }
 
@@ -425,6 +428,7 @@ void Gate::from_controller(std::string_view bytes) {
 }
 
 void Gate::take_reply(const std::string& text) {
+    last_heard_ = now_;
     if (text == "ok" || text.starts_with("error:")) return take_answer(text);
     if (text.starts_with("Grbl")) { // Grbl 1.1h ['$' for help]; GrblHAL 1.1f ...
         banner_ = text;
@@ -498,6 +502,7 @@ void Gate::take_answer(const std::string& text) {
 
 /// A line was taken in. Lines before it that have left the planner have been made.
 void Gate::note_made(const LinePointer& line) {
+    expected_ = line->verdict.end;
     if (is_checking_only_ || is_alarmed_ || is_derailed_ || awaits_reset_) return;
     // Grbl takes jogs when all other motions have ended.
     // They may be cancelled at any time, also by a button on the board: what they cut stays.
@@ -527,13 +532,17 @@ void Gate::take_status(const GrblStatus& status) {
         in_planner_.clear();
         jogs_ = 0;
     }
+    if (is_idle && stands) compare_place(status);
     const bool is_at_rest = is_idle || status.state == "Alarm" || status.state == "Check";
     if (is_at_rest && stands && std::exchange(greets_, false) && !banner_.empty())
         links_.to_sender(banner_ + "\r\n");
-    // It stands, and has not answered.
-    const bool awaits_plain =
-        !outstanding_.empty() && outstanding_.front().line && is_plain(*outstanding_.front().line);
-    if (is_idle && awaits_plain && now_ - last_sent_ >= patience && now_ - last_answer_ >= patience
+    // It stands, and has not answered; a dwell and a homing take their time.
+    const bool awaits_answer =
+        !outstanding_.empty()
+        && (!outstanding_.front().line
+            || (outstanding_.front().line->kind != GrblLine::home
+                && outstanding_.front().line->text.find("G4") == std::string::npos));
+    if (is_idle && awaits_answer && now_ - last_sent_ >= patience && now_ - last_answer_ >= patience
         && !std::exchange(said_no_answer_, true))
         say("the controller does not answer. Reset Grbl to go on.");
     if (asking_ != Asking::status || !stands) return;
@@ -565,7 +574,23 @@ void Gate::take_status(const GrblStatus& status) {
     ask_next_fact();
 }
 
+/// The machine stands. If this is not where its last line ends, a line was lost, or somebody else
+/// has moved it.
+void Gate::compare_place(const GrblStatus& status) {
+    constexpr double most = 0.05; // mm: rounding of the report
+    if (!expected_ || !status.mpos || !knows_settings_ || is_checking_only_ || is_alarmed_
+        || is_derailed_ || awaits_reset_ || asking_ != Asking::nothing || needs_asking())
+        return;
+    const core::Vec3 away = facts_.scaled(*status.mpos) - *expected_;
+    if (std::max({std::abs(away.x), std::abs(away.y), std::abs(away.z)}) <= most) return;
+    expected_.reset();
+    ++changes_;
+    say("the machine does not stand where its last line ends. The next line is checked from where "
+        "it stands.");
+}
+
 void Gate::take_reset() {
+    expected_.reset();
     drop_unsent();
     lines_.clear();
     outstanding_.clear();
@@ -585,6 +610,7 @@ void Gate::take_reset() {
 }
 
 void Gate::take_alarm() {
+    expected_.reset();
     drop_unsent();
     is_alarmed_ = true;
     in_planner_.clear();
@@ -667,6 +693,7 @@ void Gate::take_facts() {
             if (epoch != epoch_) return;
             asking_ = Asking::nothing;
             changes_known_ = changes_asked_for_;
+            expected_.reset();
             has_jogged_ = false;
             answered_through_ = made_through_ = followed_ = last_number_;
             go_on();
@@ -695,6 +722,15 @@ void Gate::tick(int64_t now) {
         asked_status_ = now_;
         links_.to_controller(std::string_view(&status_request, 1));
     }
+    // Grbl reports nothing while it homes.
+    const bool is_homing = !outstanding_.empty() && outstanding_.front().line
+                           && outstanding_.front().line->kind == GrblLine::home;
+    const bool hears_nothing = !outstanding_.empty() && !is_homing && now_ - last_sent_ >= patience
+                               && now_ - last_heard_ >= patience;
+    if (hears_nothing && !std::exchange(said_no_answer_, true))
+        say("the controller does not answer, nor does it say what it does. Check the cable, or "
+            "reset Grbl to "
+            "go on.");
     if (awaits_reset_ && now_ - reset_at_ >= patience && !std::exchange(said_no_answer_, true))
         say("the controller does not answer after the reset.");
     // Says early what is wrong.

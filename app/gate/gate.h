@@ -65,6 +65,7 @@ private:
     void take_reply(const std::string& text);
     void take_answer(const std::string& text);
     void take_status(const GrblStatus& status);
+    void compare_place(const GrblStatus& status);
     void take_reset();
     void take_alarm();
 
@@ -125,6 +126,8 @@ private:
     bool was_refused_ = false; // one of these requests
     GrblFacts facts_, asked_;
     core::Vec3 position_ = core::Vec3(0.0); // as reported
+    // Where the machine stands behind the last line that it has taken, if that is known, mm.
+    std::optional<core::Vec3> expected_;
     bool position_is_of_work_ = false;
     std::string banner_, said_;
     bool is_checking_only_ = false; // Grbl's check mode: nothing moves
@@ -135,7 +138,8 @@ private:
     // taken in without jogs.
     uint64_t last_number_ = 0, made_through_ = 0, followed_ = 0, answered_through_ = 0;
     std::deque<uint64_t> in_planner_; // lines that may still be in the planner
-    int64_t now_ = 0, last_answer_ = 0, last_sent_ = 0, asked_status_ = 0, last_refusal_ = 0,
+    int64_t now_ = 0, last_answer_ = 0, last_heard_ = 0, last_sent_ = 0, asked_status_ = 0,
+            last_refusal_ = 0,
             reset_at_ = 0; // ms
     uint64_t passed_ = 0, refused_ = 0;
 };

@@ -614,6 +614,16 @@ LineVerdict LineCheck::judge_jog(LineVerdict verdict, std::vector<core::Event>& 
     return verdict;
 }
 
+std::optional<core::Vec3> LineCheck::place_ahead() const {
+    if (!ahead_ || !is_set_up_ || jogged_ || !ahead_->spread.none()) return {};
+    core::Vec3 place(0.0, 0.0, shift_);
+    for (size_t i = 0; i < 3; ++i) {
+        if (!ahead_->position[i]) return {};
+        place[static_cast<int>(i)] += *ahead_->position[i];
+    }
+    return place;
+}
+
 LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_jog) {
     if (!knows_control_) return not_understood("Nothing is known of the control yet.", 9);
     // Grbl makes such a jog to machine zero.

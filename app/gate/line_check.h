@@ -19,14 +19,15 @@ namespace app {
 
 /// What is said about a line for Grbl.
 struct LineVerdict {
-    LiveAnswer answer;             // whether it may be sent; if not, why
-    int error = 9;                 // if not: Grbl's number for the sender
-    bool moves = false;            // it has a motion
-    bool fills_planner = false;    // it gives the planner at least one block
-    bool is_plain = false;         // Grbl has no reason to refuse it
-    bool stops_at_contact = false; // a probing motion
-    bool asks_anew = false;        // what is known of the control does not hold behind it
-    bool asks_first = false;       // it may be sent if the control stands where it is expected
+    LiveAnswer answer;               // whether it may be sent; if not, why
+    int error = 9;                   // if not: Grbl's number for the sender
+    bool moves = false;              // it has a motion
+    bool fills_planner = false;      // it gives the planner at least one block
+    bool is_plain = false;           // Grbl has no reason to refuse it
+    bool stops_at_contact = false;   // a probing motion
+    bool asks_anew = false;          // what is known of the control does not hold behind it
+    bool asks_first = false;         // it may be sent if the control stands where it is expected
+    std::optional<core::Vec3> end{}; // where the machine then stands, if that is known
 };
 
 /// What the operator says while nothing moves; takes effect with synchronise.
@@ -67,6 +68,10 @@ public:
     /// been cancelled at any place, also by a button of the machine, so the next one is checked
     /// from wherever it may begin.
     LineVerdict judge(uint64_t number, const std::string& text, bool is_jog);
+
+    /// Where the machine stands behind all lines that may be sent, machine coordinates, mm; empty
+    /// if that is not known.
+    std::optional<core::Vec3> place_ahead() const;
 
     /// Follows the cuts of lines up to this number, which have been made; at most `most` of them.
     /// Whether some are left.

@@ -19,6 +19,7 @@
 namespace app_test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -458,6 +459,15 @@ protected:
             text += fmt::format("[{}:0.000,0.000,0.000]\r\n", name);
         return text + "[TLO:0.000]\r\nok\r\n";
     }
+    /// The place where a line with absolute positions ends.
+    void go_to(const std::string& line) {
+        std::array<double, 3> at{};
+        std::sscanf(position_.c_str(), "%lf,%lf,%lf", &at[0], &at[1], &at[2]);
+        for (size_t i = 0; i < 3; ++i)
+            if (const size_t word = line.find("XYZ"[i]); word != std::string::npos)
+                at[i] = std::strtod(line.c_str() + word + 1, nullptr);
+        position_ = fmt::format("{:.3f},{:.3f},{:.3f}", at[0], at[1], at[2]);
+    }
     /// Answers all requests for the status, and up to `most` lines.
     void play_controller(size_t most = 1000) {
         check_all();
@@ -466,7 +476,10 @@ protected:
             if (end != std::string::npos && most > 0) {
                 const std::string line = at_controller_.substr(0, end);
                 at_controller_.erase(0, end + 1);
-                if (line[0] != '$') run_.push_back(line);
+                if (line[0] != '$') {
+                    run_.push_back(line);
+                    go_to(line);
+                }
                 --most;
                 gate_.from_controller(answer_to(line));
             } else if (asked_ > 0) {
@@ -518,6 +531,49 @@ TEST_F(GatedSender, GetsRepliesInOrder) {
     EXPECT_THAT(at_sender_, ElementsAre("ok", "ok", HasSubstr("stops before G0X70Z5"), "error:9",
                                         "ok", StartsWith("[GC:"), "ok", "error:9"));
     EXPECT_THAT(run_, ElementsAre("G0X1"));
+}
+
+/// A line was lost, or somebody else has moved the machine.
+TEST_F(GatedSender, AsksAgainIfTheMachineIsNotWhereItsLastLineEnds) {
+    begin();
+    send("G0X53\n"); // and Z40
+    position_ = "53.020,0.000,40.000";
+    const auto report = [&] {
+        gate_.from_sender("?");
+        play_controller();
+    };
+    report();
+    report();
+    send("G0X100\n"); // above the clamp
+    EXPECT_THAT(at_sender_, ElementsAre("ok", "ok"));
+    position_ = "53.000,0.000,20.000"; // it did not go there, and is lower
+    report();
+    report();
+    EXPECT_THAT(at_sender_.back(), HasSubstr("does not stand where its last line ends"));
+    send("G0X100\n");
+    EXPECT_THAT(at_sender_.back(), StartsWith("error"));
+    EXPECT_THAT(run_, ElementsAre("G0X53", "G0X100"));
+}
+
+TEST_F(GatedSender, SaysWhenTheControllerSaysNothing) {
+    begin();
+    gate_.from_sender("G2X1Y0I.5J0\n");
+    check_all();
+    for (int i = 0; i < 30; ++i) gate_.tick(time_ += 100);
+    EXPECT_THAT(at_sender_, Contains(HasSubstr("does not answer, nor")));
+}
+
+/// It stands, so nothing keeps it from answering.
+TEST_F(GatedSender, SaysWhenAnAnswerIsLost) {
+    begin();
+    gate_.from_sender("M8\n");
+    check_all();
+    at_controller_.clear();
+    for (int i = 0; i < 30; ++i) {
+        gate_.tick(time_ += 100);
+        gate_.from_controller("<Idle|MPos:0.000,0.000,40.000|FS:0,0>\r\n");
+    }
+    EXPECT_THAT(at_sender_, Contains(HasSubstr("does not answer. Reset")));
 }
 
 TEST_F(GatedSender, FillsTheControllersBufferAndNoMore) {
