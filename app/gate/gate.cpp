@@ -725,8 +725,8 @@ void Gate::tick(int64_t now) {
     // Grbl reports nothing while it homes.
     const bool is_homing = !outstanding_.empty() && outstanding_.front().line
                            && outstanding_.front().line->kind == GrblLine::home;
-    const bool hears_nothing = !outstanding_.empty() && !is_homing && now_ - last_sent_ >= patience
-                               && now_ - last_heard_ >= patience;
+    const bool hears_nothing = !outstanding_.empty() && !is_homing
+                               && now_ - std::max(last_sent_, last_heard_) >= 2 * patience;
     if (hears_nothing && !std::exchange(said_no_answer_, true))
         say("the controller does not answer, nor does it say what it does. Check the cable, or "
             "reset Grbl to "

@@ -28,6 +28,7 @@
 #include "gcode/language/codes.h"
 #include "gcode/language/control.h"
 #include "gcode/language/language.h"
+#include "gcode/text/program_text.h"
 #include "gcode/text/source.h"
 
 namespace gcode {
@@ -160,29 +161,19 @@ struct Interpreter::Scratch {
     void position_in_lines();
 };
 
-/// The line of a text that ends at a CR without LF, though more follows; 0 if there is none.
-size_t line_with_lone_return(std::string_view text) {
-    size_t line = 1;
-    for (size_t at = 0; (at = text.find_first_of("\r\n", at)) != std::string_view::npos;
-         ++line, ++at) {
-        if (text[at] == '\n') continue;
-        if (at + 1 == text.size()) return 0;
-        if (text[at + 1] != '\n') return line;
-        ++at;
-    }
-    return 0;
-}
-
 /// Whether a program is known to have the lines that the control sees. Grbl ends a line at CR.
 /// LinuxCNC takes it for a blank and reads on in the same line. Of other controls it is not known,
 /// unless all lines of the file end so.
 core::Result<void> check_returns(const Program& program, DialectId dialect) {
     if (dialect == DialectId::grbl || program.windows) return {};
     if (dialect != DialectId::linuxcnc && program.text.find('\n') == std::string::npos) return {};
-    const size_t line = line_with_lone_return(program.text);
-    if (line == 0) return {};
-    core::Error error{
-        core::ErrorCode::syntax, {.line = static_cast<uint32_t>(line)}, {}, program.file};
+    const auto at = lone_return(program.text);
+    if (!at) return {};
+    const auto after =
+        std::upper_bound(program.line_starts.begin(), program.line_starts.end(), *at);
+    core::Error error{core::ErrorCode::syntax, {}, {}, program.file};
+    error.where.line = static_cast<uint32_t>(after - program.line_starts.begin());
+    error.where.column = static_cast<uint32_t>(*at - *(after - 1) + 1);
     error.message = fmt::format(
         "the line ends at a carriage return without a line feed, and {}; save the program with the "
         "same end of line everywhere",

@@ -5,6 +5,16 @@
 
 namespace gcode {
 
+std::optional<size_t> lone_return(std::string_view text) {
+    for (size_t at = 0; (at = text.find('\r', at)) != std::string_view::npos; ++at) {
+        const size_t next = text.find_first_not_of('\r', at);
+        if (next == std::string_view::npos) return {};
+        if (text[next] != '\n') return at;
+        at = next;
+    }
+    return {};
+}
+
 std::vector<uint32_t> starts_of_lines(std::string_view text) {
     std::vector<uint32_t> starts;
     const bool has_returns = text.find('\r') != std::string_view::npos;

@@ -20,6 +20,10 @@ inline std::string_view without_line_end(std::string_view line) {
     return line;
 }
 
+/// The offset of a CR after which more of a line follows: neither LF, further CRs up to LF, nor the
+/// end of the text. Empty if there is none.
+std::optional<size_t> lone_return(std::string_view text);
+
 /// Message for a text with NUL bytes: UTF-16 by its first two bytes, else a binary file.
 std::string_view nul_bytes_error(std::string_view text);
 

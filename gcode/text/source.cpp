@@ -135,9 +135,8 @@ core::Result<void> LineWindows::check(const Window& window) const {
                     window.first_line + static_cast<uint64_t>(after - window.starts.begin()) - 1));
     }
     // With the program as a whole, this depends on the control (gcode/exec/interpreter.cpp).
-    for (size_t at = 0; (at = text.find('\r', at)) != std::string_view::npos; ++at) {
-        if (at + 1 == text.size() || text[at + 1] == '\n') continue;
-        const auto after = std::upper_bound(window.starts.begin(), window.starts.end(), at);
+    if (const auto at = lone_return(text)) {
+        const auto after = std::upper_bound(window.starts.begin(), window.starts.end(), *at);
         return tl::unexpected(
             refusal(ErrorCode::syntax,
                     "has a carriage return without a line feed, where a control may read on in the "

@@ -559,7 +559,7 @@ TEST_F(GatedSender, SaysWhenTheControllerSaysNothing) {
     begin();
     gate_.from_sender("G2X1Y0I.5J0\n");
     check_all();
-    for (int i = 0; i < 30; ++i) gate_.tick(time_ += 100);
+    for (int i = 0; i < 50; ++i) gate_.tick(time_ += 100);
     EXPECT_THAT(at_sender_, Contains(HasSubstr("does not answer, nor")));
 }
 

@@ -19,8 +19,10 @@ def block(number, **what):
     return {"interval": known["cycles"]} | known
 
 
-def report(blocks, look_ahead=2, taken=None):
-    return {"config": {"device": {"clock_mhz": 100}, "control": {"look_ahead": look_ahead}},
+def report(blocks, look_ahead=2, taken=None, host_lines=0):
+    return {"config": {"device": {"clock_mhz": 100, "host_cycles_per_line": 4},
+                       "control": {"look_ahead": look_ahead}},
+            "counters": {"host_lines": host_lines},
             "totals": {"missed": sum(1 for b in blocks if (b["slack"] or 0.0) < 0.0),
                        "taken": taken if taken is not None else float(len(blocks))},
             "blocks": blocks}
@@ -123,9 +125,11 @@ class Reports(unittest.TestCase):
         self.assertAlmostEqual(feed_limit.without_braking(report(blocks))[0], 2.0 / 1e-5)
         self.assertEqual(feed_limit.without_braking(report(blocks[:2])), (math.inf, None))
 
-    def test_the_bus_has_56_cycles_of_a_segment(self):
-        self.assertAlmostEqual(feed_limit.bus_share(report([block(0), block(1, cycles=1800)])), 0.4)
-        self.assertEqual(feed_limit.bus_share(report([block(0, cycles=500)])), 1.0)
+    def test_the_host_brings_a_line_in_so_many_cycles(self):
+        blocks = [block(0), block(1, cycles=1800)]
+        cycles = sum(each["interval"] for each in blocks)
+        self.assertAlmostEqual(feed_limit.host_share(report(blocks, host_lines=100)), 400 / cycles)
+        self.assertEqual(feed_limit.host_share(report(blocks, host_lines=cycles)), 1.0)
 
     def test_the_reason_is_the_look_ahead_a_crowd_the_block_or_those_before_it(self):
         late = {"slack": -0.5, "due": 0.5, "permitted": 1.0}
@@ -151,7 +155,8 @@ first = {{"block": 0, "line": 6, "segments": 5, "cycles": 600, "interval": 600, 
          "due": None, "entered": 0.0, "slack": None}}
 block = {{"block": 1, "line": 7, "segments": 5, "cycles": 600, "interval": 600, "asked": 0.0, "permitted": 0.2,
          "due": 0.1 if late else 0.3, "entered": 6.0, "slack": -0.1 if late else 0.1}}
-print(json.dumps({{"config": {{"device": {{"clock_mhz": 100}}, "control": {{"look_ahead": 256}}}},
+print(json.dumps({{"config": {{"device": {{"clock_mhz": 100, "host_cycles_per_line": 4}},
+                             "control": {{"look_ahead": 256}}}}, "counters": {{"host_lines": 141}},
                   "totals": {{"missed": int(late), "taken": 9.0}}, "blocks": [first, block]}}))
 sys.exit(1 if late else 0)
 """

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 /// Lines of all lengths with all line ends; every third is empty.
 std::string mixed_text(std::mt19937& random, size_t lines) {
-    constexpr const char* ends[] = {"\n", "\r\n", "\r"};
+    constexpr const char* ends[] = {"\n", "\r\n", "\r\r\n"};
     std::string text = "\xEF\xBB\xBF";
     for (size_t i = 0; i < lines; ++i) {
         if (random() % 3 != 0) text += "X" + std::string(random() % 90, '1');
@@ -47,6 +47,19 @@ TEST(LineWindows, GiveTheLinesOfTheWholeTextInAnyOrder) {
         ASSERT_TRUE(behind);
         EXPECT_FALSE(*behind);
     }
+}
+
+/// A control may read on in the same line.
+TEST(LineWindows, HaveNoLoneReturns) {
+    const ScopedFolder folder;
+    std::string text;
+    for (int i = 0; i < 50; ++i) text += "G0 X1\n";
+    const auto windows = LineWindows::open(folder.write("p.nc", text + "G0 X2\rG0 X3\n"), 64);
+    ASSERT_TRUE(windows);
+    EXPECT_TRUE((*windows)->line(1));
+    const auto line = (*windows)->line(51);
+    ASSERT_FALSE(line);
+    EXPECT_EQ(line.error().where.line, 51U);
 }
 
 /// A program with windows of a few lines.

@@ -114,7 +114,7 @@ TEST(Linuxcnc, ReadsOnBehindALoneCarriageReturn) {
     EXPECT_THAT(refused("G0 X1\nG0 Z60\rX160\n"), HasSubstr("carriage return"));
     EXPECT_THAT(refused("; up\rG0 Z60\nG0 X160\n"), HasSubstr("carriage return"));
     EXPECT_THAT(refused("G0 X1\rG0 X2\r"), HasSubstr("carriage return"));
-    EXPECT_EQ(traced("G0 X1\r\nG0 X2\r"),
+    EXPECT_EQ(traced("G0 X1\r\r\nG0 X2\r\r"),
               "straight_traverse x=1 y=0 z=0\nstraight_traverse x=2 y=0 z=0\n");
     EXPECT_THAT(error_of("O1\nG0 X1\rG0 X2\n", DialectId::fanuc), HasSubstr("carriage return"));
     EXPECT_EQ(error_of("O1\rG0 X1\rG0 X2\rM30\r", DialectId::fanuc), "");
