@@ -91,7 +91,6 @@ bool leaves_its_cut_upwards(const core::ToolAssembly& tool) {
               [](const auto& a, const auto& b) { return a.z1 + a.margin < b.z1 + b.margin; });
     double widest = 0.0;
     for (const core::ProfileElement& element : elements) {
-        if (element.r1 + element.margin < widest - most_undercut) return false;
         widest = std::max({widest, element.r0 + element.margin, element.r1 + element.margin});
         if (element.r1 + element.margin < widest - most_undercut) return false;
     }
