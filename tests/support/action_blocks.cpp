@@ -12,6 +12,7 @@ void tools(ProgramText& text) {
         text.line("T{} M6", text.whole(0, 9));
         break;
     case 2:
+        text.line("G4 P0"); // a straight feed directly before M61 is not made
         text.line("M61 Q{}", text.whole(0, 9));
         break;
     default:
