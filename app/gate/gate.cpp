@@ -1,6 +1,7 @@
 #include "app/gate/gate.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <iterator>
@@ -524,6 +525,19 @@ void Gate::note_made(const LinePointer& line) {
         made_through_ = in_planner_.front();
 }
 
+/// Whether Grbl answers a line only after a while, although nothing moves: homing, a dwell.
+bool Gate::takes_its_time(const Line& line) {
+    if (line.kind == GrblLine::home) return true;
+    const std::string& text = line.text;
+    for (size_t at = 0; (at = text.find('G', at)) != std::string::npos; ++at) {
+        const size_t code = text.find_first_not_of('0', at + 1);
+        if (code == std::string::npos || text[code] != '4') continue;
+        const char next = code + 1 < text.size() ? text[code + 1] : ' ';
+        if (next != '.' && std::isdigit(static_cast<unsigned char>(next)) == 0) return true;
+    }
+    return false;
+}
+
 void Gate::take_status(const GrblStatus& status) {
     const bool is_idle = status.state == "Idle";
     const bool stands = outstanding_.empty() && now_ - last_answer_ >= rest;
@@ -536,12 +550,10 @@ void Gate::take_status(const GrblStatus& status) {
     const bool is_at_rest = is_idle || status.state == "Alarm" || status.state == "Check";
     if (is_at_rest && stands && std::exchange(greets_, false) && !banner_.empty())
         links_.to_sender(banner_ + "\r\n");
-    // It stands, and has not answered; a dwell and a homing take their time.
+    // It stands, and has not answered.
     const bool awaits_answer =
         !outstanding_.empty()
-        && (!outstanding_.front().line
-            || (outstanding_.front().line->kind != GrblLine::home
-                && outstanding_.front().line->text.find("G4") == std::string::npos));
+        && (!outstanding_.front().line || !takes_its_time(*outstanding_.front().line));
     if (is_idle && awaits_answer && now_ - last_sent_ >= patience && now_ - last_answer_ >= patience
         && !std::exchange(said_no_answer_, true))
         say("the controller does not answer. Reset Grbl to go on.");
@@ -729,8 +741,7 @@ void Gate::tick(int64_t now) {
                                && now_ - std::max(last_sent_, last_heard_) >= 2 * patience;
     if (hears_nothing && !std::exchange(said_no_answer_, true))
         say("the controller does not answer, nor does it say what it does. Check the cable, or "
-            "reset Grbl to "
-            "go on.");
+            "reset Grbl to go on.");
     if (awaits_reset_ && now_ - reset_at_ >= patience && !std::exchange(said_no_answer_, true))
         say("the controller does not answer after the reset.");
     // Says early what is wrong.

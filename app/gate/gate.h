@@ -80,6 +80,7 @@ private:
     void send_ready();
     void send_line(const LinePointer& line);
     static bool is_plain(const Line& line);
+    static bool takes_its_time(const Line& line);
 
     bool needs_asking() const { return changes_ != changes_known_; }
     void ask_control();

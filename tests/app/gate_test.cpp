@@ -566,13 +566,23 @@ TEST_F(GatedSender, SaysWhenTheControllerSaysNothing) {
 /// It stands, so nothing keeps it from answering.
 TEST_F(GatedSender, SaysWhenAnAnswerIsLost) {
     begin();
+    const auto stand = [&](int cycles) {
+        for (int i = 0; i < cycles; ++i) {
+            gate_.tick(time_ += 100);
+            gate_.from_controller("<Idle|MPos:0.000,0.000,40.000|FS:0,0>\r\n");
+        }
+    };
+    for (const char* dwell : {"G4P20\n", "G04 P20\n"}) {
+        gate_.from_sender(dwell);
+        check_all();
+        stand(100);
+        gate_.from_controller("ok\r\n");
+        EXPECT_THAT(at_sender_, ElementsAre("ok"));
+        at_sender_.clear();
+    }
     gate_.from_sender("M8\n");
     check_all();
-    at_controller_.clear();
-    for (int i = 0; i < 30; ++i) {
-        gate_.tick(time_ += 100);
-        gate_.from_controller("<Idle|MPos:0.000,0.000,40.000|FS:0,0>\r\n");
-    }
+    stand(30);
     EXPECT_THAT(at_sender_, Contains(HasSubstr("does not answer. Reset")));
 }
 
