@@ -4,6 +4,7 @@
 #include "hwsim/coprocessor.h"
 #include "hwsim/driver.h"
 #include "tests/hwsim/judged_queries.h"
+#include "tests/hwsim/random_models.h"
 
 namespace hwsim {
 namespace {
