@@ -15,17 +15,6 @@ size_t word_of_pair(uint32_t place, bool is_first) {
     return (is_first ? first_pair : 0) + words_of_pair * place;
 }
 
-SegmentKind kind_of(Order order) {
-    switch (order) {
-    case Order::measure:
-        return SegmentKind::measure;
-    case Order::model:
-        return SegmentKind::model;
-    default:
-        return SegmentKind::permit;
-    }
-}
-
 Order order_of(SegmentKind kind) {
     switch (kind) {
     case SegmentKind::permit:
@@ -43,7 +32,7 @@ Descriptor path_in(const Line& line, Order order) {
     d.order = order;
     d.pairs = (line.word[0] >> 16) & 0xFFU;
     d.segment = {.sequence = line.word[1],
-                 .kind = kind_of(order),
+                 .kind = order == Order::measure ? SegmentKind::measure : SegmentKind::permit,
                  .log2_steps = static_cast<uint8_t>((line.word[0] >> 8) & 0xFFU),
                  .last = (line.word[0] & last_flag) != 0,
                  .is_timed = (line.word[0] & timed_flag) != 0,

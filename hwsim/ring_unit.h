@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "hwsim/descriptor.h"
 #include "hwsim/memory_unit.h"

@@ -35,8 +35,8 @@ public:
     /// loses no clearance, without cutting. All along it, no pair of bodies is nearer to each other
     /// than at its start, or at an earlier one since the violation, by more than 0.01 mm, unless it
     /// stays 10 mm apart and twice its allowance.
-    /// Straight up, a tool that is nowhere wider than higher up may leave the stock in any case: a
-    /// guard that was started anew does not know what was cut.
+    /// Straight up, a tool that gets no narrower upwards may leave the stock in any case: a guard
+    /// that was started anew does not know what was cut.
     LiveAnswer judge_retreat(const LiveMotion& queued);
 
     /// Whether the motions that the control has queued cannot move any more, after a refusal.

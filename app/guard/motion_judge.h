@@ -62,8 +62,8 @@ public:
     /// Events may be made that lose no clearance, without cutting: all along them, no pair of
     /// bodies is nearer to each other than it has been at rest since begin_retreat, by more than
     /// 0.01 mm and `rounding`, unless it stays 10 mm apart and twice its allowance. Straight up
-    /// a tool that is nowhere wider than higher up may leave the stock in any case: nobody may
-    /// know what was cut.
+    /// a tool that gets no narrower upwards may leave the stock in any case: nobody may know
+    /// what was cut.
     LiveAnswer judge_retreat(std::vector<core::Event> events, double rounding,
                              core::SimulatorState& state);
 

@@ -295,8 +295,8 @@ struct ModalState {
     // may be instead; 0 where an axis is known.
     AxisValues spread{};
     bool has_probed = false;
-    bool holds_feed =
-        false; // LinuxCNC has not made the last straight feed, to join it with the next
+    // LinuxCNC has not made the last straight feed yet, to join it with the next one.
+    bool holds_feed = false;
     Position home, second_home;              // G28, G30: machine coordinates
     Position suspended_axis = zero_position; // saved by G92.2 for G92.3
     bool axis_offset_on = false;             // G92 or G52 is active, even if zero

@@ -563,6 +563,16 @@ TEST_F(GatedSender, SaysWhenTheControllerSaysNothing) {
     EXPECT_THAT(at_sender_, Contains(HasSubstr("does not answer, nor")));
 }
 
+/// Grbl reports nothing while it homes.
+TEST_F(GatedSender, MayHomeWithoutAWordOfTheController) {
+    begin();
+    gate_.from_sender("$H\n");
+    check_all();
+    EXPECT_EQ(at_controller_, "$H\n");
+    for (int i = 0; i < 200; ++i) gate_.tick(time_ += 100);
+    EXPECT_TRUE(at_sender_.empty());
+}
+
 /// It stands, so nothing keeps it from answering.
 TEST_F(GatedSender, SaysWhenAnAnswerIsLost) {
     begin();
