@@ -292,7 +292,10 @@ std::string GuardRun::objection(const feeler_segment& motion) {
         return fmt::format(
             "LinuxCNC has tool {} in the spindle, and feeler-tp.tool-number says {}.",
             status_.state()->tool, motion.tool);
-    return difference(setup_, *status_.state(), unit_, options_.tolerance);
+    std::string why = difference(setup_, *status_.state(), unit_, options_.tolerance);
+    if (!why.empty() && status_.state()->is_homed)
+        why += " Set it right on the control, or correct the set-up and start the guard again.";
+    return why;
 }
 
 /// Whether the set-up file was edited; looks at most ten times a second.

@@ -313,9 +313,11 @@ int drawn_number() {
 bool Gate::handle_own_command(const LinePointer& line) {
     const std::string_view text = line->text;
     if (text == own_command) {
-        const std::string state = is_latched_     ? latch_
-                                  : said_.empty() ? "Motions are checked."
-                                                  : said_;
+        const std::string state = is_latched_      ? latch_
+                                  : !said_.empty() ? said_
+                                  : knows_settings_ && is_set_up_ && !needs_asking()
+                                      ? "Motions are checked."
+                                      : "The controller will be asked before the next motion.";
         say(fmt::format("{} lines passed, {} refused. {}", passed_, refused_, state));
         answer(line, "ok");
         return true;

@@ -276,6 +276,21 @@ void GateServer::look_at_terminal() {}
 void GateServer::empty_terminal() {}
 void GateServer::close_terminal() {}
 #else
+/// Bytes pass as they are; otherwise ends of lines are doubled, and what is written comes back.
+void make_raw(int terminal) {
+    termios settings{};
+    if (::tcgetattr(terminal, &settings) != 0) return;
+    ::cfmakeraw(&settings);
+    ::tcsetattr(terminal, TCSANOW, &settings);
+}
+
+/// Whether a link is the one of a gate that has ended: to a pseudo-terminal that is no more.
+bool leads_to_closed_terminal(const std::string& link) {
+    std::error_code error;
+    const std::string target = std::filesystem::read_symlink(link, error).string();
+    return target.starts_with("/dev/pts/") && !std::filesystem::exists(target, error);
+}
+
 core::Result<void> GateServer::open_terminal(const std::string& link) {
     const auto failure = [] { return std::error_code(errno, std::system_category()); };
     terminal_ = ::posix_openpt(O_RDWR | O_NOCTTY);
@@ -285,9 +300,18 @@ core::Result<void> GateServer::open_terminal(const std::string& link) {
     // Only after it was opened once does the system say whether somebody has it open.
     const int other_end = name ? ::open(name, O_RDWR | O_NOCTTY) : -1;
     if (other_end < 0) return not_open(link, failure());
+    make_raw(other_end);
     ::close(other_end);
     std::error_code error;
-    if (std::filesystem::is_symlink(link)) std::filesystem::remove(link, error);
+    if (std::filesystem::is_symlink(link)) {
+        // A gate that was killed leaves its link behind.
+        if (!leads_to_closed_terminal(link))
+            return core::fail(core::ErrorCode::invalid_value,
+                              fmt::format("{} exists already, and another program may use it: "
+                                          "choose another name, or remove it",
+                                          link));
+        std::filesystem::remove(link, error);
+    }
     std::filesystem::create_symlink(name, link, error);
     if (error) return not_open(link, error);
     link_ = link;
@@ -311,10 +335,7 @@ void GateServer::look_at_terminal() {
                 gate_.from_sender({&byte, 1});
         return;
     }
-    termios settings{};
-    if (::tcgetattr(terminal_, &settings) != 0) return;
-    ::cfmakeraw(&settings); // otherwise what the gate writes comes back
-    ::tcsetattr(terminal_, TCSANOW, &settings);
+    make_raw(terminal_);
     asio::posix::stream_descriptor port(io_, ::dup(terminal_));
     is_terminal_used_ = true;
     take_sender(stream_of(std::move(port)));
@@ -331,7 +352,8 @@ void GateServer::empty_terminal() {
 
 void GateServer::close_terminal() {
     std::error_code ignored;
-    if (!link_.empty()) std::filesystem::remove(link_, ignored);
+    if (!link_.empty() && std::filesystem::read_symlink(link_, ignored) == terminal_name_)
+        std::filesystem::remove(link_, ignored);
     if (terminal_ >= 0) ::close(terminal_);
 }
 #endif

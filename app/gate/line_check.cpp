@@ -420,7 +420,7 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
 void LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
                             uint64_t made_through, const std::optional<OperatorWord>& word) {
     using Kind = OperatorWord::Kind;
-    has_changed_ = core::file_bytes(path_) != text_;
+    look_at_setup();
     if (judge_) follow(made_through, waiting_.size());
     // A part of the others may have been made, but not in check mode.
     has_cut_ = has_cut_ || (made_ && made_->stock.log.size() > 0) || (!facts.is_dry && cuts() > 0);
@@ -624,7 +624,10 @@ std::optional<core::Vec3> LineCheck::place_ahead() const {
     return place;
 }
 
+void LineCheck::look_at_setup() { has_changed_ = core::file_bytes(path_) != text_; }
+
 LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_jog) {
+    look_at_setup();
     if (!knows_control_) return not_understood("Nothing is known of the control yet.", 9);
     // Grbl makes such a jog to machine zero.
     if (is_jog && text.find_first_of("XYZ") == std::string::npos)

@@ -95,6 +95,7 @@ private:
 
     LineCheck() = default;
     core::Result<void> take_zero(const GrblFacts& facts, bool is_new_workpiece);
+    void look_at_setup();
     core::Result<void> build(const GrblFacts& facts);
     bool use_shift(double z);
     void take_modes(const GrblFacts& facts, const core::Vec3& position);

@@ -16,8 +16,12 @@ constexpr double least_time = 1e-7;     // seconds
 constexpr double turn_tolerance = 0.02; // mm
 
 std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer) {
-    std::string text = motion.line > 0 ? fmt::format("Feeler stops before line {}: ", motion.line)
-                                       : std::string("Feeler stops before the next motion: ");
+    std::string text = "Feeler stops before the next motion: ";
+    if (motion.line > 0 && motion.purpose == FEELER_TOOL_CHANGE)
+        text = fmt::format("Feeler stops before the way to the tool change, after line {}: ",
+                           motion.line);
+    else if (motion.line > 0)
+        text = fmt::format("Feeler stops before line {}: ", motion.line);
     text += answer.reason;
     if (!answer.cure.empty()) text += " " + answer.cure;
     return text + " Abort the program to go on.";
@@ -108,6 +112,8 @@ void Guard::follow_operator() {
 
 bool Guard::may_permit(const feeler_segment& motion) {
     std::string why = objection ? objection(motion) : std::string();
+    if (why.empty() && feeler_load(&ring_.external) != 0)
+        why = "An external offset is in use. Set it back to 0.";
     const int64_t now = core::platform::steady_milliseconds();
     if (why != reason_) {
         reason_ = why;
@@ -141,6 +147,9 @@ void Guard::permit(uint64_t number) {
 bool Guard::step() {
     constexpr size_t cuts_at_a_time = 16;
     feeler_store(&ring_.alive, ring_.alive + 1);
+    if (!std::exchange(has_said_latch_, true) && is_latched_ && tell)
+        tell("Feeler: an earlier violation is not cleared yet, so only motions that lose no "
+             "clearance are permitted.");
     follow_operator();
     const uint64_t next = ring_.read + 1;
     if (feeler_load(&ring_.written) < next) {

@@ -79,6 +79,7 @@ private:
     int64_t since_ = 0;         // milliseconds
     uint64_t session_ = 0, last_permit_ = 0;
     bool has_begun_ = false, is_disturbed_ = false;
+    bool has_said_latch_ = false;
     uint64_t permitted_ = 0, refused_ = 0;
     PermitTimes times_;
 };

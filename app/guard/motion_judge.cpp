@@ -199,7 +199,7 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
     const bool goes_up = goes_straight_up(events);
     const auto held = state.tool ? setup_.tools.find(*state.tool) : setup_.tools.end();
     const bool may_catch = held != setup_.tools.end() && !leaves_its_cut_upwards(held->second);
-    bool is_caught = false;
+    bool is_caught = false, overlaps = false;
     const double slack = retreat_tolerance + rounding;
     const auto comes_nearer = [&](const core::PairClearance& pair) {
         const auto known = std::find_if(before.pairs.begin(), before.pairs.end(),
@@ -210,7 +210,10 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
             if (!may_catch) return false;
             is_caught = true;
         }
-        if (pair.verdict == core::Verdict::collision) return true;
+        if (pair.verdict == core::Verdict::collision) {
+            overlaps = is_within;
+            return true;
+        }
         const double limit = std::max(10.0, 2.0 * pair.allowance.distance);
         const auto best = reached(pair.pair);
         const double at_rest = best != reached_.end() ? best->second : core::infinity;
@@ -228,6 +231,11 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
         return {.reason =
                     "The tool is wider below than above, so stock above its head may hold it.",
                 .cure = "Move it out by hand, the way it went in."};
+    if (overlaps)
+        return {.reason = fmt::format("In the model, {} and {} overlap already.",
+                                      core::part_name(setup_, nearer->pair),
+                                      core::body_name(setup_, nearer->pair)),
+                .cure = "Move the tool out by hand."};
     return {.reason = fmt::format("It brings {} and {} nearer to each other.",
                                   core::part_name(setup_, nearer->pair),
                                   core::body_name(setup_, nearer->pair))};

@@ -10,6 +10,7 @@ import contextlib
 import json
 import math
 import os
+import pathlib
 import random
 import re
 import signal
@@ -741,8 +742,40 @@ def says_what_is_missing():
             assert ran.returncode == 2 and port in ran.stderr, ran
 
 
+def notices_that_the_setup_has_changed():
+    """Also while nothing has made it ask the controller again."""
+    with Rig(speed=20) as rig:
+        rig.expect("G21G90G0X0Y0Z40")
+        rig.settle()
+        text = pathlib.Path(rig.setup).read_text(encoding="utf-8")
+        pathlib.Path(rig.setup).write_text(text + "\n# moved\n", encoding="utf-8")
+        rig.refused("G0X1", "set-up file has changed")
+        rig.settle()
+        assert near(rig.position(), (0, 0, 40)), rig.position()
+
+
+def leaves_links_of_others_alone():
+    with tempfile.TemporaryDirectory() as folder, Rig(arguments=()) as rig:
+        port = rig.simulator._listener.getsockname()[1]
+        link = os.path.join(folder, "grbl")
+        command = [FEELER, "gate", "--setup", rig.setup, "--controller", f"127.0.0.1:{port}", "--pty", link]
+        for target in ("/dev/null", "/dev/pts/ptmx"):
+            os.symlink(target, link)
+            ran = subprocess.run(command, capture_output=True, text=True, timeout=60)  # clock: gives up
+            assert ran.returncode == 2 and "exists already" in ran.stderr, ran
+            assert os.readlink(link) == target
+            os.remove(link)
+        os.symlink("/dev/pts/99999", link)  # of a gate that was killed
+        gate = subprocess.Popen(command)
+        until(lambda: os.path.exists(link), "the terminal")
+        os.remove(link)
+        os.symlink("/dev/null", link)
+        gate.send_signal(signal.SIGINT)
+        gate.wait(20)
+        assert os.readlink(link) == "/dev/null"
+
+
 def serves_a_terminal():
-    import tty
     with tempfile.TemporaryDirectory() as folder, Rig(arguments=()) as rig:
         rig.gate.kill()
         rig.gate.wait()
@@ -754,12 +787,17 @@ def serves_a_terminal():
             for _ in range(2):
                 until(lambda: os.path.exists(link), "the terminal")
                 end = os.open(link, os.O_RDWR | os.O_NOCTTY)
-                tty.setraw(end)
-                os.write(end, b"G21G90G0X0Y0Z35\nG0X70Z5\n$X\n")
+                # As from a sender that sets nothing; Grbl answers each carriage return and each line feed.
+                os.write(end, b"\r\n\r\nG21G90G0X0Y0Z35\r\nG0X70Z5\r\n$X\r\n")
                 text = b""
                 while text.count(b"ok\r\n") < 2 or b"error:9" not in text:
                     text += os.read(end, 4096)
+                time.sleep(0.5)  # clock: lets more come
+                os.set_blocking(end, False)
+                with contextlib.suppress(BlockingIOError):
+                    text += os.read(end, 4096)
                 assert b"clamp" in text
+                assert text.count(b"ok\r\n") == 9, text
                 os.close(end)
         finally:
             gate.send_signal(signal.SIGINT)

@@ -342,8 +342,34 @@ def does_nothing_without_a_guard(m):
     m.wait(lambda s: pin("feeler-tp.holding") == "TRUE", "it holds")
     pause(1)
     expect(is_at(m.wait_at_rest(), X=0.0, Y=0.0, Z=0.0), "it has moved without a guard")
+    m.wait_told("feeler guard does not run")
     m.start_guard()
     m.wait(lambda s: is_at(s.position, X=10.0), "it goes on with a guard")
+    m.stop_guard()
+
+
+@scenario
+def waits_while_an_external_offset_is_in_use(m):
+    for axis in "xz":
+        set_pin(f"axis.{axis}.eoffset-enable", "1")
+        set_pin(f"axis.{axis}.eoffset-scale", "1")
+    for state in (m.api.STATE_OFF, m.api.STATE_ON):  # the offsets are enabled when it is switched on
+        m.command.state(state)
+        m.command.wait_complete()
+    m.start_guard()
+    m.mdi("G0 X100 Z60")
+    m.wait(lambda s: is_at(s.position, X=100.0), "it moves without an offset")
+    m.wait_at_rest()
+    for i, counts in enumerate((-20, 7, -3)):
+        set_pin("axis.z.eoffset-counts", str(counts))
+        pause(1)
+        m.messages.clear()
+        m.mdi(f"G0 X{99 - i}")
+        m.wait_told("external offset")
+        expect(is_at(m.wait_at_rest(), X=100.0 - i), "it moves with an offset")
+        # What LinuxCNC leaves of the offset depends on the way back.
+        set_pin("axis.z.eoffset-counts", "0")
+        m.wait(lambda s: is_at(s.position, X=99.0 - i), "it goes on without an offset")
     m.stop_guard()
 
 
@@ -1041,6 +1067,8 @@ def make_files(folder, name, planner):
     write(display, f"#!/bin/sh\nexec python3 driver.py --drive {folder} {name}\n")
     os.chmod(display, 0o755)
     axes = "".join(AXIS.format(letter=letter, joint=joint, **LINEAR) for joint, letter in enumerate("XYZ"))
+    if name == "waits_while_an_external_offset_is_in_use":
+        axes = re.sub(r"(\[AXIS_.\]\n)", r"\1OFFSET_AV_RATIO = 0.5\n", axes)
     ini, hal = INI.format(display=display, planner=planner), HAL
     if name.startswith("five_axes"):
         for old, new in FIVE_AXES_INI.items():

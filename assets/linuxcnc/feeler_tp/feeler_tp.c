@@ -160,6 +160,9 @@ static struct call last_passed; /* the motion that the planner got last */
 static int was_clear_pressed;
 static uint64_t last_alive;
 static long long alive_at; /* when the guard gave its last sign of life, nanoseconds */
+static long long const second = 1000000000LL;
+static long long waits_since; /* until now no motion has waited without a guard */
+static int has_said_why;
 
 static void copy_pose(double *to, EmcPose const *pose) {
     double const values[9] = {pose->tran.x, pose->tran.y, pose->tran.z, pose->a, pose->b,
@@ -289,12 +292,14 @@ static int must_rest_before(struct call const *after, struct call const *before)
     return !(error[0] <= FEELER_TURN_ERROR && error[1] <= before->tolerance);
 }
 
+/* LinuxCNC's way back to 0 ends up to 1e-5 before it, depending on the acceleration of the axis. */
 static int has_external_offset(void) {
+    double const negligible = 2e-5; /* of a unit or a degree */
     double offset[9];
     if (!status) return 0;
     copy_pose(offset, &status->eoffset_pose);
     for (int i = 0; i < 9; ++i)
-        if (offset[i] > 1e-9 || offset[i] < -1e-9) return 1;
+        if (!(offset[i] <= negligible && offset[i] >= -negligible)) return 1;
     return 0;
 }
 
@@ -550,15 +555,27 @@ static void release_permitted(TP_STRUCT *tp) {
     }
 }
 
+/* Says once that motions wait because no guard answers. */
+static void say_why_nothing_moves(long long now) {
+    if (!*pins->holding || *pins->guard_alive) {
+        waits_since = now;
+        has_said_why = 0;
+    } else if (!has_said_why && now - waits_since > second) {
+        has_said_why = 1;
+        rtapi_print_msg(RTAPI_MSG_ERR, "Feeler holds: feeler guard does not run or does not answer, so nothing moves\n");
+    }
+}
+
 static void show_state(TP_STRUCT *tp) {
     uint64_t const alive = feeler_load(&ring->alive);
     long long const now = rtapi_get_time();
     if (alive != last_alive) alive_at = now;
     last_alive = alive;
-    *pins->guard_alive = alive != 0 && now - alive_at < 1000000000LL;
+    *pins->guard_alive = alive != 0 && now - alive_at < second;
     *pins->latched = feeler_load(&ring->latched) != 0;
     *pins->holding =
         motion_count > 0 && real_tpIsDone(tp) && first_motion()->number > last_permitted();
+    say_why_nothing_moves(now);
     if (motion_count > 0) *pins->line = first_motion()->tag.fields[GM_FIELD_LINE_NUMBER];
     if (*pins->clear && !was_clear_pressed) feeler_store(&ring->cleared, ring->cleared + 1);
     was_clear_pressed = *pins->clear;
