@@ -199,8 +199,7 @@ Wires outputs_of(const CoprocessorState& s, const DeviceConfig& config, Line& co
     wires.has_written = s.memory.has_written;
     wires.written = s.memory.written;
     wires.writes_done = s.memory.writes_done;
-    wires.is_memory_stalled =
-        is_stalled(s.memory, config, wires.cycle) || is_stalled(s.ring, config, wires.cycle);
+    wires.is_memory_stalled = is_stalled(s.memory, config) || is_stalled(s.ring, config);
     wires.answer = first_answer(s);
     connect_ring(wires, s, copied);
     return wires;
@@ -229,7 +228,7 @@ void tick_memory(CoprocessorState& s, const DeviceConfig& config, const Wires& w
     if (wires.granted != none)
         s.next_request = static_cast<uint8_t>((wires.granted + 1) % s.elements.size());
     tick(s.memory, config, wires.cycle, wires.request);
-    if (wires.copied) s.memory.writes.push({wires.copied_to, *wires.copied, wires.cycle});
+    if (wires.copied) s.memory.writes.push({wires.copied_to, *wires.copied});
 }
 
 void tick_permits(CoprocessorState& s, const DeviceConfig& config, const Wires& wires) {
@@ -487,7 +486,8 @@ uint32_t read_of_stop(CoprocessorState& s, Register r) {
 
 /// Restarts the watchdogs of the host and of both memories.
 void restart_watchdog(CoprocessorState& s) {
-    s.host.heartbeat = s.memory.watchdog_since = s.ring.watchdog_since = s.cycle;
+    s.host.heartbeat = s.cycle;
+    s.memory.waited = s.ring.waited = 0;
 }
 
 void clear(CoprocessorState& s) {

@@ -62,7 +62,7 @@ void take_next_line(FunctionalDevice& device) {
     ++s.ring.fetched;
     ++s.ring.reads_done;
     if (line)
-        take_line(s.ring, {true, is_intact(*line, number), s.run, number, s.cycle, *line},
+        take_line(s.ring, {true, false, is_intact(*line, number), s.run, number, s.cycle, *line},
                   device.config);
     else
         halt(s, Stop::bad_address, s.permits.permit_sequence + 1, number);

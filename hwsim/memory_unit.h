@@ -147,23 +147,23 @@ using CheckUnit = Pipeline<ReadResponse, 4>;
 struct MemoryUnit {
     struct Pending {
         ReadRequest request;
-        uint64_t cycle = 0; // of the request, then of the arrival of the line
+        uint64_t arrives = 0; // cycle
         Line line;
         bool operator==(const Pending&) const = default;
     };
     struct Write {
         uint32_t address = 0;
         Line line;
-        uint64_t cycle = 0; // in which it came
         bool operator==(const Write&) const = default;
     };
 
     DeviceMemory lines;
-    Ring<Pending> asked, under_way;
+    Ring<ReadRequest> asked;
+    Ring<Pending> under_way;
     Ring<Write> writes;
     uint64_t free_at = 0;        // cycle in which the port is free
     bool write_was_last = false; // so a read has priority
-    uint64_t watchdog_since = 0; // cycle; earlier waiting does not count
+    uint64_t waited = 0;         // cycles in which nothing was read, written or answered, but should
     bool stalled = false;        // no responses: injected fault
 
     CheckUnit check;          // its output is that of the unit
@@ -182,8 +182,7 @@ inline bool accepts(const MemoryUnit& unit) { return !unit.asked.full(); }
 /// One rising clock edge.
 void tick(MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle, const ReadRequest& in);
 
-/// Whether a request has waited longer than the limit, or a line to be written has while the port
-/// was idle.
-bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config, uint64_t cycle);
+/// Whether something waits for the memory, which has done nothing for longer than the limit.
+bool is_stalled(const MemoryUnit& unit, const DeviceConfig& config);
 
 } // namespace hwsim

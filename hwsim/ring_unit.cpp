@@ -1,7 +1,5 @@
 #include "hwsim/ring_unit.h"
 
-#include <algorithm>
-
 #include "hwsim/registers.h"
 
 namespace hwsim {
@@ -17,41 +15,52 @@ void fail(RingUnit& unit, Stop reason, uint32_t run, uint32_t sequence, uint32_t
     unit.is_faulty = true;
 }
 
-/// A line from the host, if one arrives in this cycle.
-FetchedDescriptor arriving(RingUnit& unit, const HostMemory& host, const RingInput& in) {
+/// Takes a line from the host, if one arrives at this edge; returns it if it is one of the ring.
+FetchedDescriptor take_arrival(RingUnit& unit, const HostMemory& host, const RingInput& in) {
     unit.has_copied = false;
-    if (unit.stalled || unit.under_way.empty() || unit.under_way.front().arrives > in.cycle)
+    const bool was_due = !unit.under_way.empty();
+    if (unit.stalled || !was_due || unit.under_way.front().arrives > in.cycle) {
+        unit.waited = was_due ? unit.waited + 1 : 0;
         return {};
+    }
+    unit.waited = 0;
     const RingUnit::Read read = unit.under_way.front();
     unit.under_way.pop();
     ++unit.reads_done;
     const Line* line = host.at(read.from);
-    if (read.of_copy) {
-        --unit.copying;
-        // Without a line there is nothing to write, but it counts as written: what reads it finds a
-        // wrong check word or an old epoch, and the device stops anyway.
-        unit.has_copied = true;
-        unit.copied_to = read.number;
-        unit.copied = line ? *line : Line();
-    }
-    if (!line && !unit.is_faulty && read.run == in.run)
-        fail(unit, Stop::bad_address, in.run, 0, read.number);
-    if (read.of_copy || !line) return {};
-    return {true, is_intact(*line, read.number), read.run, read.number, read.asked, *line};
+    if (!read.of_copy)
+        return {true,        !line,      line && is_intact(*line, read.number), read.run,
+                read.number, read.asked, line ? *line : Line()};
+    // Without a line there is nothing to write, but it counts as written: what reads it finds a
+    // wrong check word or an old epoch, and the device stops anyway.
+    --unit.copying;
+    unit.has_copied = true;
+    unit.copied_is_missing = !line;
+    unit.copied_run = read.run;
+    unit.copied_to = read.number;
+    unit.copied = line ? *line : Line();
+    return {};
 }
 
-/// Asks the host for a line of the ring, if there is room, otherwise for one to be copied. `given`:
-/// lines on their way into the queue of the memory.
-void use_port(RingUnit& unit, const DeviceConfig& config, const RingInput& in, uint32_t given) {
-    if (in.is_stopped || unit.is_faulty || unit.free_at > in.cycle || unit.under_way.full()) return;
+/// What the unit reads next from the host: a line of the ring, if there is room, otherwise one to
+/// be copied.
+enum class NextRead : uint8_t { none, of_ring, of_copy };
+NextRead next_read(const RingUnit& unit, const DeviceConfig& config, const RingInput& in) {
+    if (unit.free_at > in.cycle || unit.under_way.full()) return NextRead::none;
+    const uint32_t ahead = unit.fetched - unit.head;
+    if (unit.fetched != unit.tail && ahead < config.host_queue) return NextRead::of_ring;
+    const uint32_t on_the_way = unit.copying + (unit.has_copied ? 1U : 0U);
+    return has_copy(unit) && on_the_way < in.memory_room ? NextRead::of_copy : NextRead::none;
+}
+
+void read(RingUnit& unit, NextRead which, const DeviceConfig& config, const RingInput& in) {
     RingUnit::Read read{
         .run = in.run, .asked = in.cycle, .arrives = in.cycle + config.host_latency};
-    const uint32_t ahead = unit.fetched - unit.head;
-    LineCopy& copy = unit.current.copy;
-    if (unit.fetched != unit.tail && ahead < config.host_queue) {
+    if (which == NextRead::of_ring) {
         read.number = unit.fetched;
         read.from = address_in_ring(unit, unit.fetched++);
-    } else if (copy.count > 0 && unit.copying + given < in.memory_room) {
+    } else {
+        LineCopy& copy = unit.current.copy;
         read.of_copy = true;
         read.number = copy.line++;
         read.from = copy.from;
@@ -59,15 +68,12 @@ void use_port(RingUnit& unit, const DeviceConfig& config, const RingInput& in, u
         --copy.count;
         ++unit.copying;
         ++unit.lines_asked;
-    } else {
-        return;
     }
     unit.under_way.push(read);
     unit.free_at = in.cycle + config.host_cycles_per_line;
 }
 
 void carry_out(RingUnit& unit, const DeviceConfig& config, const RingInput& in) {
-    if (in.is_stopped || unit.is_faulty) return;
     if (is_overrun(unit)) return fail(unit, Stop::fifo_overrun, in.run, 0, unit.tail);
     if (has_entry(unit)) {
         if (in.has_room) unit.entry = take_entry(unit, in.run);
@@ -121,6 +127,7 @@ void drop_orders(RingUnit& unit) {
 
 void take_line(RingUnit& unit, const FetchedDescriptor& line, const DeviceConfig& config) {
     ++unit.head;
+    if (line.is_missing) return fail(unit, Stop::bad_address, line.run, 0, line.number);
     if (!line.is_intact) return fail(unit, Stop::bad_descriptor, line.run, 0, line.number);
     const bool is_first = unit.current.pairs == 0;
     if (is_first) {
@@ -157,20 +164,24 @@ OrderedEntry take_entry(RingUnit& unit, uint32_t run) {
 }
 
 void tick(RingUnit& unit, const HostMemory& host, const DeviceConfig& config, const RingInput& in) {
-    const bool had_copied = unit.has_copied;
     unit.entry.valid = unit.fault.valid = false;
     if (in.flush) drop_orders(unit);
     const FetchedDescriptor checked = unit.check.output();
-    unit.check.tick(arriving(unit, host, in));
-    carry_out(unit, config, in);
+    const bool has_lost_copy =
+        unit.has_copied && unit.copied_is_missing && unit.copied_run == in.run;
+    const bool works = !in.flush && !in.is_stopped && !unit.is_faulty;
+    const NextRead next = works ? next_read(unit, config, in) : NextRead::none;
+    if (works && has_lost_copy)
+        fail(unit, Stop::bad_address, in.run, 0, unit.copied_to);
+    else if (works)
+        carry_out(unit, config, in);
+    unit.check.tick(take_arrival(unit, host, in));
     if (checked.valid && checked.run == in.run) unit.waiting.push(checked);
-    use_port(unit, config, in, (had_copied ? 1U : 0U) + (unit.has_copied ? 1U : 0U));
+    if (next != NextRead::none) read(unit, next, config, in);
 }
 
-bool is_stalled(const RingUnit& unit, const DeviceConfig& config, uint64_t cycle) {
-    return !unit.under_way.empty()
-           && cycle > std::max(unit.under_way.front().asked, unit.watchdog_since)
-                          + config.host_latency + config.memory_limit;
+bool is_stalled(const RingUnit& unit, const DeviceConfig& config) {
+    return unit.waited > config.memory_limit;
 }
 
 } // namespace hwsim

@@ -22,9 +22,10 @@ struct HostMemory {
 /// A line of the ring on its way.
 struct FetchedDescriptor {
     bool valid = false;
-    bool is_intact = false; // by its check word
-    uint32_t run = 0;       // counts stops
-    uint32_t number = 0;    // of the line, counted since reset
+    bool is_missing = false; // the host has no memory there
+    bool is_intact = false;  // by its check word
+    uint32_t run = 0;        // counts stops
+    uint32_t number = 0;     // of the line, counted since reset
     uint64_t asked = 0;     // cycle
     Line line;
 
@@ -54,8 +55,8 @@ struct OrderFault {
 };
 
 /// Reads descriptors from a ring in the host's memory and carries them out in order: entries go
-/// into the FIFO, copied lines into the memory. Lines of the ring are read ahead; those of a copy
-/// are read while the next descriptors are carried out. Reads are answered in order.
+/// into the FIFO, copied lines into the memory. Lines of the ring are read ahead. Reads are answered
+/// in order. What the unit does at an edge follows from what was there before.
 struct RingUnit {
     struct Read {
         bool of_copy = false;
@@ -74,7 +75,7 @@ struct RingUnit {
 
     Ring<Read> under_way;
     uint64_t free_at = 0; // cycle in which the port to the host is free
-    uint64_t watchdog_since = 0;
+    uint64_t waited = 0;  // cycles without an answer while one is due
     bool stalled = false; // no responses: injected fault
     Pipeline<FetchedDescriptor, 4> check;
     Ring<FetchedDescriptor> waiting;
@@ -92,6 +93,8 @@ struct RingUnit {
     OrderedEntry entry; // outputs
     OrderFault fault;
     bool has_copied = false;
+    bool copied_is_missing = false; // then the line is 0
+    uint32_t copied_run = 0;
     uint32_t copied_to = 0;
     Line copied;
 
@@ -124,8 +127,8 @@ struct RingInput {
 /// One rising clock edge.
 void tick(RingUnit& unit, const HostMemory& host, const DeviceConfig& config, const RingInput& in);
 
-/// Whether a read has waited longer than the limit.
-bool is_stalled(const RingUnit& unit, const DeviceConfig& config, uint64_t cycle);
+/// Whether answers are due, and none has come for longer than the limit.
+bool is_stalled(const RingUnit& unit, const DeviceConfig& config);
 
 /// The byte address of a line of the ring.
 uint64_t address_in_ring(const RingUnit& unit, uint32_t number);

@@ -109,6 +109,17 @@ package device;
   } answer_t;
   localparam int ANSWER_BITS = 287;
 
+  // Counters since reset: of an element, and of all searches.
+  typedef struct packed {
+    logic [63:0] busy, node_hits, node_misses, record_hits, record_misses, wait_memory, wait_port, wait_retire;
+  } element_counts_t;
+  localparam int ELEMENT_COUNTS_BITS = 512;
+
+  typedef struct packed {
+    logic [63:0] queries, nodes, splits, box_tests, pair_tests;
+    logic [6:0] deepest;
+  } search_totals_t;
+
   // What is read of a line in a search: all but the check word.
   localparam int LINE_BITS = 480;
   typedef logic [LINE_BITS-1:0] line_t;

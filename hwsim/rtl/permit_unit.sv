@@ -53,6 +53,9 @@ module permit_unit #(
     output logic [63:0] missed,
     output logic [63:0] longest,
     output logic [63:0] least_slack,
+    output logic has_permitted,  // at the last edge
+    output logic has_measured,
+    output device::search_totals_t totals,
     output logic [ELEMENTS*THREADS-1:0] occupied
 );
   localparam int ALL_THREADS = ELEMENTS * THREADS;
@@ -254,6 +257,17 @@ module permit_unit #(
       end
     end
 
+    has_permitted <= permits;
+    has_measured <= measures;
+    if (retires && first.kind != device::MODEL) totals.queries <= totals.queries + 64'd1;
+    if (retires && first.is_searched) begin
+      totals.nodes <= totals.nodes + 64'(answer.nodes);
+      totals.splits <= totals.splits + 64'(answer.splits);
+      totals.box_tests <= totals.box_tests + 64'(answer.box_tests);
+      totals.pair_tests <= totals.pair_tests + 64'(answer.pair_tests);
+      if (answer.deepest > totals.deepest) totals.deepest <= answer.deepest;
+    end
+
     if (reason != device::NO_STOP) begin
       stop <= reason;
       stop_sequence <= reason_sequence;
@@ -310,6 +324,9 @@ module permit_unit #(
       missed <= '0;
       longest <= '0;
       least_slack <= {1'b0, {63{1'b1}}};
+      has_permitted <= 1'b0;
+      has_measured <= 1'b0;
+      totals <= '0;
     end
   end
 

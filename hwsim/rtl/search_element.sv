@@ -39,7 +39,8 @@ module search_element #(
     output logic [5*THREADS-1:0] phases,
     output logic [THREADS-1:0] is_done,
     input logic [3:0] answer_thread,
-    output device::answer_t answer
+    output device::answer_t answer,
+    output device::element_counts_t counts
 );
   typedef logic [THREADS-1:0] threads_t;
 
@@ -183,6 +184,29 @@ module search_element #(
     if (flush || reset) request <= 1'b0;
   end
 
+  // --- Counters
+
+  function automatic logic [4:0] count_of(input threads_t set);
+    count_of = '0;
+    for (int i = 0; i < THREADS; i++) count_of = count_of + 5'(set[i]);
+  endfunction
+  threads_t is_busy, is_waiting;
+  logic [6:0] without_port;
+  assign without_port = 7'(count_of(wants_path & ~gets_path)) + 7'(count_of(wants_gap & ~gets_gap))
+      + 7'(count_of(wants_cache & ~gets_cache)) + 7'(count_of(wants_stack & ~gets_stack))
+      + 7'(count_of(wants_memory & ~gets_memory));
+  always_ff @(posedge clk) begin
+    counts.busy <= counts.busy + 64'(is_busy != 0);
+    counts.node_hits <= counts.node_hits + 64'(is_looked && is_looked_node && node_hit);
+    counts.node_misses <= counts.node_misses + 64'(is_looked && is_looked_node && !node_hit);
+    counts.record_hits <= counts.record_hits + 64'(is_looked && !is_looked_node && record_hit);
+    counts.record_misses <= counts.record_misses + 64'(is_looked && !is_looked_node && !record_hit);
+    counts.wait_memory <= counts.wait_memory + 64'(count_of(is_waiting));
+    counts.wait_port <= counts.wait_port + 64'(without_port);
+    counts.wait_retire <= counts.wait_retire + 64'(count_of(is_done));
+    if (reset) counts <= '0;
+  end
+
   // --- Threads
 
   for (genvar i = 0; i < THREADS; i++) begin : threads
@@ -214,5 +238,7 @@ module search_element #(
         .phase, .answer(answers[i*device::ANSWER_BITS+:device::ANSWER_BITS]));
     assign phases[5*i+:5] = phase;
     assign is_done[i] = phase == device::DONE;
+    assign is_busy[i] = phase != device::IDLE;
+    assign is_waiting[i] = phase == device::WAIT_LINE;
   end
 endmodule

@@ -247,6 +247,7 @@ TEST(Coprocessor, CountsAPermitAsLateFromTheFirstCycleAfterItsDeadline) {
     for (const uint64_t cycle : {uint64_t{0}, (uint64_t{1} << 32) - 700}) {
         const auto asked = [&](std::optional<uint32_t> deadline) {
             TestDevice device;
+            device.companion.leave();
             device.state.cycle += cycle;
             device.write(Register::heartbeat, 1);
             device.set_models({{{0, 0, 0}, 10, 5}}, {{{9'000, 0, 0}, 10, 5}});
@@ -292,6 +293,7 @@ struct Work {
 TEST(Coprocessor, GetsLinesNoFasterThanTheBandwidth) {
     Work work(11);
     work.device.config.cycles_per_line = 60;
+    work.device.companion.leave(); // it has the usual memory
     const auto moved = [&] {
         return work.device.read(Counter::lines_read) + work.device.read(Counter::lines_written);
     };

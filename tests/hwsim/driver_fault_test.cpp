@@ -1,29 +1,27 @@
 #include <gtest/gtest.h>
 
-#include "hwsim/coprocessor.h"
-#include "hwsim/driver.h"
-#include "tests/hwsim/random_models.h"
 #include "tests/hwsim/search_oracle.h"
+#include "tests/hwsim/test_device.h"
 
 namespace hwsim {
 namespace {
 
-/// A device whose memory and host fail at random moments, while faults are on.
+/// A device whose memories fail at random moments, while faults are on.
 class FailingDevice {
 public:
     FailingDevice(uint32_t seed, const DeviceConfig& config)
         : random_(seed), device_(emulated_device(config).value()) {}
 
     DevicePort port() {
-        return port_of(device_, [this](const CoprocessorState&) {
+        return port_with_companion(device_, [this](const CoprocessorState&) {
             if (is_failing_) fail();
         });
     }
     void set_failing(bool is_failing) {
         is_failing_ = is_failing;
         device_.state.memory.stalled = device_.state.ring.stalled = false;
-        device_.state.host.watchdog = 100'000;
     }
+    bool is_failing() const { return is_failing_; }
 
 private:
     void fail() {
@@ -32,7 +30,6 @@ private:
             s.memory.lines[random_() % 400].word[random_() % 16] ^= 1U << (random_() % 32);
         if (random_() % 10'000 == 0) s.memory.stalled = true;
         if (s.memory.stalled && random_() % 3'000 == 0) s.memory.stalled = false;
-        if (random_() % 20'000 == 0) s.host.watchdog = 1;
         // In the ring, near its end; what is wrong in the images of lines stays wrong.
         const uint32_t number = s.ring.tail + random_() % 3 - 2;
         if (random_() % 1'000 == 0)
@@ -50,6 +47,14 @@ DeviceConfig random_config(std::mt19937& rng) {
     const auto one_of = [&](std::initializer_list<uint32_t> values) {
         return *(values.begin() + rng() % values.size());
     };
+    if (rng() % 3 == 0) {
+        DeviceConfig config = small_config();
+        config.memory_latency = one_of({1, 2, 30});
+        config.cycles_per_line = one_of({1, 2, 7});
+        config.host_latency = one_of({1, 3, 60});
+        config.host_cycles_per_line = one_of({1, 4});
+        return config;
+    }
     return {.elements = one_of({1, 2, 5}),
             .threads = one_of({1, 2, 7}),
             .node_cache_lines = one_of({1, 2, 16}),
@@ -94,7 +99,12 @@ struct FailingJob {
           work_records(cloud(rng)),
           tool(load_records(driver, Side::tool, tool_records).value()),
           work(load_records(driver, Side::work, work_records).value()) {
-        device.set_failing(false);
+        set_failing(false);
+    }
+
+    void set_failing(bool is_failing) {
+        device.set_failing(is_failing);
+        driver.port.write(address_of(Register::watchdog), 100'000);
     }
 
     /// Pushes a short way from anywhere to near it.
@@ -125,6 +135,9 @@ struct FailingJob {
         do {
             asked.push_back(push_any());
             if (rng() % 5 == 0) recover(driver);
+            // The host is silent for a moment.
+            if (device.is_failing() && rng() % 50 == 0)
+                driver.port.write(address_of(Register::watchdog), 1);
         } while (asked.size() < 4 && driver.next_sequence == first + asked.size());
         const DeviceReport now = wait_for_all(driver);
         EXPECT_GE(now.permitted + 1, first) << "permits never fall";
@@ -144,9 +157,9 @@ TEST(DriverFault, RecoversFromAnyFaultAtAnyMomentAndPermitsNothingTooNear) {
     for (uint32_t seed = 0; seed < 150; ++seed) {
         FailingJob job(seed);
         for (int round = 0; round < 20; ++round) {
-            job.device.set_failing(true);
+            job.set_failing(true);
             for (int i = 0; i < 3; ++i) job.ask();
-            job.device.set_failing(false);
+            job.set_failing(false);
             int tries = 0;
             while (!job.ask() && tries < 200) ++tries;
             ASSERT_LT(tries, 200) << seed;

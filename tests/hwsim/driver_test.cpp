@@ -1,10 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "core/dbm/cut_model.h"
-#include "hwsim/coprocessor.h"
-#include "hwsim/driver.h"
 #include "tests/hwsim/judged_queries.h"
-#include "tests/hwsim/random_models.h"
+#include "tests/hwsim/test_device.h"
 
 namespace hwsim {
 namespace {
@@ -13,7 +11,10 @@ const core::RevolvedProfile holder{{{4, 3, 14, 3, 0}, {14, 7, 18, 9, 0}, {18, 9,
 const test_support::CutBox raw{{{-30, -25, -15}, {30, 25, 0}}, 0.0, {}};
 
 DeviceConfig bench_config() {
-    return {.elements = 2, .threads = 3, .fifo_depth = 8, .memory_lines = 1U << 15};
+    DeviceConfig config = small_config();
+    config.memory_lines = 1U << 15;
+    config.memory_limit = 100'000;
+    return config;
 }
 
 /// A job as a control would see it: segments, and cuts between them.
@@ -113,7 +114,7 @@ TEST(Driver, GetsTheSameFromTheEmulatorAsFromTheFunctionalModel) {
         FunctionalDevice functional = functional_device(bench_config()).value();
         EmulatedDevice emulated = emulated_device(bench_config()).value();
         const Outcome expected = drive_on(port_of(functional), seed, 200);
-        EXPECT_EQ(drive_on(port_of(emulated), seed, 200), expected);
+        EXPECT_EQ(drive_on(port_with_companion(emulated), seed, 200), expected);
         EXPECT_GT(emulated.state.cycle, 10'000U);
     }
 }
@@ -150,7 +151,7 @@ TEST(Driver, MeasuresWhatTheExactEngineDoes) {
 
 TEST(Driver, GivesLinesBackWhenNothingReadsThemAnyMore) {
     EmulatedDevice device = emulated_device(bench_config()).value();
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
     drive(driver, work, random_job(6, tool, work, 200));
@@ -165,7 +166,7 @@ TEST(Driver, SendsNoSegmentBeforeItsLinesAreWritten) {
     config.cycles_per_line = 60;
     EmulatedDevice device = emulated_device(config).value();
     device.bus_cycles = 1;
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     const auto wait_until_written = [&] {
         for (int i = 0; i < 40'000; ++i) driver.port.wait();
@@ -190,7 +191,7 @@ TEST(Driver, SendsNoSegmentBeforeItsLinesAreWritten) {
 
 TEST(Driver, PermitsASegmentWhenAllOfItsPairsAreKeptApart) {
     EmulatedDevice device = emulated_device(bench_config()).value();
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     const SlotNumber stock = load_stock(driver, raw.uncut(1.0)).value();
     const SlotNumber clamp =
@@ -247,7 +248,7 @@ TEST(Driver, KeepsAsManyModelsAsThereAreSlots) {
 
 TEST(Driver, ChecksSegmentsAgainstAModelThatIsRemovedAfterThem) {
     EmulatedDevice device = emulated_device(bench_config()).value();
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
     const core::RevolvedProfile slim{{{9, 1, 20, 1, 0}}}, long_one{{{2, 1, 20, 1, 0}}};
     for (uint32_t i = 0; i < 30; ++i) {
@@ -284,7 +285,7 @@ TEST(Driver, RecoversFromAWrongBit) {
     std::mt19937 rng(8);
     for (int round = 0; round < 30; ++round) {
         EmulatedDevice device = emulated_device(bench_config()).value();
-        Driver driver = open_device(port_of(device)).value();
+        Driver driver = open_device(port_with_companion(device)).value();
         const SlotNumber tool = load_tool(driver, holder, 0.05).value();
         const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
         const PathSegment above{{-20, 0, 1.2}, {20, 0, 1.2}, {{tool, work, 1.0}}};
@@ -305,7 +306,7 @@ TEST(Driver, RecoversFromAWrongBit) {
 
 TEST(Driver, GivesLinesBackThatAStopHeld) {
     EmulatedDevice device = emulated_device(bench_config()).value();
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();
     const uint32_t lines = driver.space.next;
@@ -325,7 +326,7 @@ TEST(Driver, GivesLinesBackThatAStopHeld) {
 
 TEST(Driver, RecoversFromAMemoryThatStoredNoLines) {
     EmulatedDevice device = emulated_device(bench_config()).value();
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     const SlotNumber tool = load_tool(driver, holder).value();
     core::CutModel stock = raw.uncut(1.0);
     const SlotNumber work = load_stock(driver, stock).value();
@@ -383,9 +384,9 @@ TEST(Driver, WaitsForMemoryThatSearchesStillNeed) {
         config.memory_lines = 1'000;
         config.cycles_per_line = 20;
         EmulatedDevice device = emulated_device(config).value();
-        Driver driver = open_device(port_of(device)).value();
+        Driver driver = open_device(port_with_companion(device)).value();
         const SlotNumber tool = load_tool(driver, holder).value();
-        if (is_stopped) halt(device.state, Stop::host_silent, 1);
+        if (is_stopped) driver.port.write(address_of(Register::watchdog), 1);
         uint32_t count = 0;
         for (; count < 20; ++count) {
             const auto work = load_records(driver, Side::work, records);
@@ -394,6 +395,7 @@ TEST(Driver, WaitsForMemoryThatSearchesStillNeed) {
             unload(driver, *work);
         }
         if (is_stopped) {
+            driver.port.write(address_of(Register::watchdog), 0);
             recover(driver);
             const SlotNumber work = load_records(driver, Side::work, records).value();
             EXPECT_EQ(push(driver, {{0, 0, 900}, {9, 9, 900}, {{tool, work, 1.0}}}).value(), 1U);
@@ -407,7 +409,7 @@ TEST(Driver, FeelsForTheHostWhileASlowMemoryTakesItsLines) {
     DeviceConfig config = bench_config();
     config.cycles_per_line = 1'000;
     EmulatedDevice device = emulated_device(config).value();
-    Driver driver = open_device(port_of(device)).value();
+    Driver driver = open_device(port_with_companion(device)).value();
     driver.port.write(address_of(Register::watchdog), 50'000);
     const SlotNumber tool = load_tool(driver, holder).value();
     const SlotNumber work = load_stock(driver, raw.uncut(1.0)).value();

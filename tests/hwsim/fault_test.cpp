@@ -54,6 +54,7 @@ TEST(Fault, ASegmentOutOfTurnIsRefused) {
         TestDevice device = working_device();
         device.push(along_the_row(sequence));
         EXPECT_EQ(device.read(Register::stop_seq), sequence);
+        device.companion.leave();
         device.state.permits.stop_sequence = 2;
         expect_stopped(device, Stop::sequence);
         expect_recovers(device);
@@ -257,6 +258,7 @@ TEST(Fault, ATreeWithoutAnEndStopsTheDevice) {
 TEST(Fault, NothingIsAcceptedAfterTheLastSequenceNumber) {
     constexpr uint32_t last = 0xFFFF'FFFF;
     TestDevice device = working_device();
+    device.companion.leave();
     device.state.permits.permit_sequence = last - 1;
     device.state.fifo.next_sequence = last;
     device.push(along_the_row(last));
@@ -276,14 +278,14 @@ TEST(Fault, NothingIsAcceptedAfterTheLastSequenceNumber) {
 
 TEST(Fault, AHostWithoutHeartbeatGetsNoMorePermits) {
     TestDevice device = working_device();
-    device.write(Register::watchdog, 500);
     device.write(Register::heartbeat, 1);
+    device.write(Register::watchdog, 500);
     for (int i = 0; i < 10; ++i) {
         device.clock(450);
         EXPECT_EQ(device.reason(), Stop::none);
         device.write(Register::heartbeat, 1);
     }
-    device.clock(499);
+    device.clock(498);
     EXPECT_EQ(device.reason(), Stop::none);
     device.clock(2);
     expect_stopped(device, Stop::host_silent);
@@ -343,6 +345,7 @@ TEST(Fault, ResetIsAsAfterPowerUp) {
     CoprocessorState fresh = power_up(device.config);
     fresh.memory.lines = device.state.memory.lines;
     fresh.shared = device.state.shared;
+    tick(fresh, device.config);
     EXPECT_EQ(device.state, fresh);
     EXPECT_EQ(device.permitted(), 0U);
 }

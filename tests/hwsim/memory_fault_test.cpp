@@ -40,10 +40,11 @@ TEST(MemoryFault, ALineThatWaitsForReadsIsNoStall) {
     config.memory_limit = 400;
     config.cycles_per_line = 40;
     TestDevice device(config);
+    device.companion.leave();
     device.post_copy(4'000, 1);
     for (int cycle = 0; cycle < 2'000; ++cycle) {
         if (accepts(device.state.memory))
-            device.state.memory.asked.push({{.valid = true, .run = 99}, device.state.cycle});
+            device.state.memory.asked.push({.valid = true, .run = 99});
         device.clock();
     }
     EXPECT_FALSE(device.state.memory.writes.empty());

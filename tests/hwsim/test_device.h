@@ -4,6 +4,7 @@
 
 #include "hwsim/coprocessor.h"
 #include "hwsim/search.h"
+#include "tests/hwsim/companion.h"
 #include "tests/hwsim/random_models.h"
 
 namespace hwsim {
@@ -25,18 +26,22 @@ inline DeviceConfig small_config() {
             .memory_limit = 1000};
 }
 
-/// A device on a test bench: registers, the memory of the host, and the clock.
+/// A device on a test bench: registers, the memory of the host, and the clock. A write takes a cycle.
 struct TestDevice {
     static constexpr uint32_t log2_ring_size = 6, ring_size = 1U << log2_ring_size;
 
     DeviceConfig config = small_config();
     CoprocessorState state;
+    MaybeCompanion companion;
     LineSpace space;
     std::vector<Retired> retired; // all that was
     uint32_t tail = 0;            // of the ring
 
     explicit TestDevice(const DeviceConfig& with = small_config())
-        : config(checked(with).value()), state(power_up(config)), space{.end = with.memory_lines} {
+        : config(checked(with).value()),
+          state(power_up(config)),
+          companion(config),
+          space{.end = with.memory_lines} {
         open();
     }
     void open() {
@@ -54,12 +59,22 @@ struct TestDevice {
         open();
     }
 
-    uint32_t read(Register r) { return hwsim::read(state, config, address_of(r)); }
+    uint32_t read(Register r) {
+        const uint32_t value = hwsim::read(state, config, address_of(r));
+        // A high word comes in the cycle after the low one.
+        if (r != Register::found_high) companion.expect(address_of(r), value);
+        return value;
+    }
     uint64_t read(Counter c) {
-        const uint64_t low = hwsim::read(state, config, address_of(c));
+        const uint32_t low = hwsim::read(state, config, address_of(c));
+        companion.expect(address_of(c), low);
         return low | uint64_t{hwsim::read(state, config, address_of(c) + 4)} << 32;
     }
-    void write(Register r, uint32_t value) { hwsim::write(state, config, address_of(r), value); }
+    void write(Register r, uint32_t value) {
+        hwsim::write(state, config, address_of(r), value);
+        companion.write(address_of(r), value);
+        clock();
+    }
     Stop reason() { return static_cast<Stop>(read(Register::stop)); }
     uint32_t permitted() { return read(Register::permit_seq); }
     bool has_status(StatusBit bit) { return (read(Register::status) & bit) != 0; }
@@ -67,6 +82,7 @@ struct TestDevice {
     void clock(uint64_t cycles = 1) {
         for (; cycles > 0; --cycles) {
             tick(state, config);
+            companion.clock(state);
             if (state.retired.valid) retired.push_back(state.retired);
         }
     }
@@ -79,12 +95,16 @@ struct TestDevice {
         return false;
     }
 
-    /// Writes lines to the ring, and rings the doorbell.
-    void post(std::vector<Line> lines) {
+    /// Writes lines to the ring.
+    void put(std::vector<Line> lines) {
         for (Line& line : lines) {
             seal(line, tail);
             state.shared.lines[tail++ % ring_size] = line;
         }
+    }
+    /// Writes lines to the ring, and rings the doorbell.
+    void post(std::vector<Line> lines) {
+        put(std::move(lines));
         write(Register::ring_tail, tail);
     }
     void post(const Segment& entry) { post(descriptor_of({&entry, 1})); }
@@ -103,9 +123,10 @@ struct TestDevice {
 
     /// What is copied to a line of the memory.
     Line& image_of(uint32_t line) { return state.shared.lines[ring_size + line]; }
-    void post_copy(uint32_t line, uint32_t count) {
-        post({descriptor_of(LineCopy{HostMemory::address_of(ring_size + line), line, count})});
+    Line copy_of(uint32_t line, uint32_t count) const {
+        return descriptor_of(LineCopy{HostMemory::address_of(ring_size + line), line, count});
     }
+    void post_copy(uint32_t line, uint32_t count) { post({copy_of(line, count)}); }
     void store(const std::vector<AddressedLine>& lines) {
         for (const AddressedLine& line : lines) {
             image_of(line.address) = line.line;

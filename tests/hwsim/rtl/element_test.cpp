@@ -216,7 +216,7 @@ private:
         Line line = scene_.memory[address];
         if (rng_() % 8 == 0) line.word[Line::epoch_word] = 2;
         line.word[Line::check_word] = check_of(line, address);
-        memory_.writes.push({address, line, cycle_});
+        memory_.writes.push({address, line});
     }
 
     std::mt19937 rng_;
