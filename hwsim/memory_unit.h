@@ -163,8 +163,8 @@ struct MemoryUnit {
     Ring<Write> writes;
     uint64_t free_at = 0;        // cycle in which the port is free
     bool write_was_last = false; // so a read has priority
-    uint64_t waited = 0;         // cycles in which nothing was read, written or answered, but should
-    bool stalled = false;        // no responses: injected fault
+    uint64_t waited = 0;  // cycles in which nothing was read, written or answered, but should
+    bool stalled = false; // no responses: injected fault
 
     CheckUnit check;          // its output is that of the unit
     bool has_written = false; // output: caches invalidate the line

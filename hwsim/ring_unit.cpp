@@ -29,8 +29,13 @@ FetchedDescriptor take_arrival(RingUnit& unit, const HostMemory& host, const Rin
     ++unit.reads_done;
     const Line* line = host.at(read.from);
     if (!read.of_copy)
-        return {true,        !line,      line && is_intact(*line, read.number), read.run,
-                read.number, read.asked, line ? *line : Line()};
+        return {true,
+                !line,
+                line && is_intact(*line, read.number),
+                read.run,
+                read.number,
+                read.asked,
+                line ? *line : Line()};
     // Without a line there is nothing to write, but it counts as written: what reads it finds a
     // wrong check word or an old epoch, and the device stops anyway.
     --unit.copying;

@@ -26,7 +26,7 @@ struct FetchedDescriptor {
     bool is_intact = false;  // by its check word
     uint32_t run = 0;        // counts stops
     uint32_t number = 0;     // of the line, counted since reset
-    uint64_t asked = 0;     // cycle
+    uint64_t asked = 0;      // cycle
     Line line;
 
     bool operator==(const FetchedDescriptor&) const = default;
@@ -55,8 +55,8 @@ struct OrderFault {
 };
 
 /// Reads descriptors from a ring in the host's memory and carries them out in order: entries go
-/// into the FIFO, copied lines into the memory. Lines of the ring are read ahead. Reads are answered
-/// in order. What the unit does at an edge follows from what was there before.
+/// into the FIFO, copied lines into the memory. Lines of the ring are read ahead. Reads are
+/// answered in order. What the unit does at an edge follows from what was there before.
 struct RingUnit {
     struct Read {
         bool of_copy = false;

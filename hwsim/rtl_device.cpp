@@ -4,6 +4,7 @@
 
 #include "Coprocessor.h"
 #include "SmallCoprocessor.h"
+#include "hwsim/circuit_port.h"
 
 namespace hwsim {
 namespace {
@@ -282,6 +283,33 @@ DevicePort port_of(RtlDevice& device, std::function<void()> after_cycle) {
                 },
             .wait = access,
             .shared = &device.shared()};
+}
+
+core::Result<DevicePort> port_with_circuit(EmulatedDevice& device,
+                                           std::function<void(const CoprocessorState&)> after_cycle,
+                                           const CircuitDifference& difference) {
+    FEELER_TRY(RtlDevice made, RtlDevice::with(device.config));
+    const auto circuit = std::make_shared<RtlDevice>(std::move(made));
+    circuit->share(device.state.memory.lines, device.state.shared);
+    DevicePort port = port_of(
+        device, [circuit, after_cycle = std::move(after_cycle)](const CoprocessorState& state) {
+            circuit->clock();
+            if (after_cycle) after_cycle(state);
+        });
+    port.read = [circuit, difference, &device, read = std::move(port.read)](Register r) {
+        const uint32_t emulated = read(r);
+        const uint32_t value = circuit->read(address_of(r));
+        if (value != emulated && difference->empty())
+            *difference = fmt::format("in cycle {}, register {:#05x} of the circuit is {:#x}, and "
+                                      "that of the emulator {:#x}",
+                                      device.state.cycle, address_of(r), value, emulated);
+        return value;
+    };
+    port.write = [circuit, write = std::move(port.write)](uint32_t address, uint32_t value) {
+        write(address, value);
+        circuit->write(address, value);
+    };
+    return port;
 }
 
 } // namespace hwsim

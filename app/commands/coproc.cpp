@@ -16,7 +16,7 @@ namespace {
 
 struct CoprocOptions {
     CheckArguments what;
-    std::string config, format = "text", output, vcd;
+    std::string config, device = "emulator", format = "text", output, vcd;
     std::optional<size_t> from, to;
     bool past_refusals = false, no_fit = false;
 };
@@ -45,6 +45,9 @@ core::Result<CoprocessorResult> run(const CoprocOptions& options, Trace& trace) 
     CoprocessorJob job;
     FEELER_TRY(job.check, job_of(options.what));
     job.check.detail = core::Detail::every_pair;
+    job.on_circuit = options.device == "rtl";
+    // The size in which it is built.
+    if (job.on_circuit && options.config.empty()) file.device.elements = 2;
     job.device = file.device;
     if (!options.no_fit) job.other_elements.assign(tried_elements.begin(), tried_elements.end());
     if (!options.vcd.empty()) {
@@ -96,6 +99,11 @@ void add_coproc(CLI::App& cli, ExitCode& exit_code) {
     add_start_line(command, options->what);
     add_path(command, "--config", options->config,
              "Device file (TOML): [device], [control], [energy]");
+    command
+        .add_option("--device", options->device,
+                    "emulator; or rtl: its circuit answers, with the emulator beside it")
+        ->check(one_of({"emulator", "rtl"}))
+        ->capture_default_str();
     command.add_option("--format", options->format, "text, json or csv")
         ->check(one_of({"text", "json", "csv"}))
         ->capture_default_str();

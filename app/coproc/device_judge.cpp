@@ -9,6 +9,7 @@
 #include "app/coproc/device_check.h"
 #include "core/base/rule_table.h"
 #include "core/sim/verdict.h"
+#include "hwsim/circuit_port.h"
 #include "hwsim/coprocessor.h"
 
 namespace app {
@@ -178,6 +179,7 @@ struct DevicePipeline::State {
 
     hwsim::EmulatedDevice device_;
     const core::Setup* setup_;
+    hwsim::CircuitDifference difference_ = std::make_shared<std::string>();
     std::optional<CoprocessorCheck> check_ = {};
     std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle_ = {};
     std::deque<Pending> pending_ = {};
@@ -191,12 +193,16 @@ DevicePipeline::~DevicePipeline() = default;
 
 Result<std::unique_ptr<DevicePipeline>> DevicePipeline::with(
     const hwsim::DeviceConfig& config, const core::Setup& setup, const core::CutModel& stock,
-    std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle) {
+    std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle,
+    bool on_circuit) {
     FEELER_TRY(hwsim::EmulatedDevice device, hwsim::emulated_device(config));
     auto state = std::make_unique<State>(std::move(device), setup);
     state->on_cycle_ = std::move(on_cycle);
-    hwsim::DevicePort port = hwsim::port_of(
-        state->device_, [&pipeline = *state](const auto& now) { pipeline.note(now); });
+    const auto note = [&pipeline = *state](const auto& now) { pipeline.note(now); };
+    hwsim::DevicePort port = hwsim::port_of(state->device_, note);
+    if (on_circuit) {
+        FEELER_TRY(port, hwsim::port_with_circuit(state->device_, note, state->difference_));
+    }
     FEELER_TRY(state->check_, CoprocessorCheck::with(std::move(port), setup, stock));
     return std::unique_ptr<DevicePipeline>(new DevicePipeline(std::move(state)));
 }
@@ -231,6 +237,9 @@ Result<void> DevicePipeline::State::push(std::span<const core::Event> block,
 Result<void> DevicePipeline::State::finish() {
     while (true) {
         if (auto settled = settle(); !settled) return settled;
+        if (!difference_->empty())
+            return core::fail(core::ErrorCode::invalid_value,
+                              "the circuit and the emulator disagree: " + *difference_);
         if (pending_.empty()) return {};
         check_->report(); // advances the device by some cycles, and resets its watchdog
     }

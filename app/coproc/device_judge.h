@@ -60,12 +60,15 @@ private:
 /// an operator had let the machine continue. Refers to the set-up.
 class DevicePipeline {
 public:
-    /// Loads the stock into a device. Calls `on_cycle`, if given, after each cycle.
+    /// Loads the stock into a device. Calls `on_cycle`, if given, after each cycle. With
+    /// `on_circuit`, the circuit answers, and the emulated device is held against it.
     ///
-    /// Errors: an invalid device configuration; a stock that does not fit.
+    /// Errors: an invalid device configuration; a stock that does not fit; those of
+    ///         port_with_circuit().
     static core::Result<std::unique_ptr<DevicePipeline>>
     with(const hwsim::DeviceConfig& config, const core::Setup& setup, const core::CutModel& stock,
-         std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle = {});
+         std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle = {},
+         bool on_circuit = false);
 
     ~DevicePipeline();
 
@@ -75,6 +78,8 @@ public:
     core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before);
 
     /// Waits until all blocks are answered.
+    ///
+    /// Errors: those of push(); the circuit has differed from the emulated device.
     core::Result<void> finish();
 
     /// The answered blocks, in order.

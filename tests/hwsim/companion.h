@@ -11,7 +11,8 @@
 
 namespace hwsim {
 
-/// A device that does whatever an emulated one does, with the same memories, and is held against it.
+/// A device that does whatever an emulated one does, with the same memories, and is held against
+/// it.
 class Companion {
 public:
     virtual ~Companion() = default;
@@ -55,10 +56,11 @@ private:
     std::unique_ptr<Companion> companion_;
 };
 
-/// The port to an emulated device. Its companion, if any, gets the same, and everything that is read
-/// is compared. `after_cycle` may change the memories.
-inline DevicePort port_with_companion(
-    EmulatedDevice& device, const std::function<void(const CoprocessorState&)>& after_cycle = {}) {
+/// The port to an emulated device. Its companion, if any, gets the same, and everything that is
+/// read is compared. `after_cycle` may change the memories.
+inline DevicePort
+port_with_companion(EmulatedDevice& device,
+                    const std::function<void(const CoprocessorState&)>& after_cycle = {}) {
     const auto companion = std::make_shared<MaybeCompanion>(device.config);
     DevicePort port = port_of(device, [&device, companion, after_cycle](const CoprocessorState& s) {
         companion->clock(device.state);

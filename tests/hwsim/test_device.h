@@ -26,7 +26,8 @@ inline DeviceConfig small_config() {
             .memory_limit = 1000};
 }
 
-/// A device on a test bench: registers, the memory of the host, and the clock. A write takes a cycle.
+/// A device on a test bench: registers, the memory of the host, and the clock. A write takes a
+/// cycle.
 struct TestDevice {
     static constexpr uint32_t log2_ring_size = 6, ring_size = 1U << log2_ring_size;
 

@@ -44,7 +44,8 @@ private:
 
 core::Result<void> ParallelCoprocessor::open() {
     const core::CutModel& stock = runner_.machine().stock;
-    FEELER_TRY(device_, DevicePipeline::with(job_.device, check_.run.setup, stock, job_.on_cycle));
+    FEELER_TRY(device_, DevicePipeline::with(job_.device, check_.run.setup, stock, job_.on_cycle,
+                                             job_.on_circuit));
     for (const uint32_t elements : job_.other_elements) {
         hwsim::DeviceConfig config = job_.device;
         config.elements = elements;

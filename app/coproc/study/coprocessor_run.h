@@ -32,6 +32,7 @@ struct CoprocessorRun {
 struct CoprocessorJob {
     CheckJob check;
     hwsim::DeviceConfig device;
+    bool on_circuit = false;                   // the circuit answers, beside the emulated device
     std::vector<uint32_t> other_elements = {}; // further devices to emulate
     // Called with the device after each cycle; may be empty.
     std::function<void(const BlocksInDevice&, const hwsim::CoprocessorState&)> on_cycle = {};

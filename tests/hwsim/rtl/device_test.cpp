@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "hwsim/circuit_port.h"
 #include "hwsim/rtl_device.h"
 #include "tests/hwsim/rtl/random_host.h"
 
@@ -74,11 +75,31 @@ TEST(DeviceCircuit, EqualsTheEmulatorWhateverTheHostDoes) {
         for (size_t i = 0; i < stops.size(); ++i) stops[i] += both.stops()[i];
     }
     EXPECT_GT(permits, 5'000U);
-    for (const Stop stop : {Stop::violation, Stop::out_of_range, Stop::sequence,
-                            Stop::fifo_overrun, Stop::model_missing, Stop::model_changed,
-                            Stop::bad_check, Stop::bad_address, Stop::memory_stalled,
-                            Stop::host_silent, Stop::bad_descriptor})
+    for (const Stop stop :
+         {Stop::violation, Stop::out_of_range, Stop::sequence, Stop::fifo_overrun,
+          Stop::model_missing, Stop::model_changed, Stop::bad_check, Stop::bad_address,
+          Stop::memory_stalled, Stop::host_silent, Stop::bad_descriptor})
         EXPECT_GT(stops[static_cast<size_t>(stop)], 5) << name_of(stop);
+}
+
+TEST(CircuitPort, SaysWhereTheCircuitDiffers) {
+    EmulatedDevice device = emulated_device(small_config()).value();
+    const auto difference = std::make_shared<std::string>();
+    const DevicePort port = port_with_circuit(device, {}, difference).value();
+    EXPECT_EQ(port.read(Register::identification), identification_word);
+    EXPECT_EQ(port.read(Register::permit_seq), 0U);
+    EXPECT_EQ(*difference, "");
+    device.state.permits.permit_sequence = 5;
+    EXPECT_EQ(port.read(Register::permit_seq), 0U);
+    EXPECT_EQ(*difference,
+              "in cycle 12, register 0x034 of the circuit is 0x0, and that of the emulator 0x5");
+}
+
+TEST(CircuitPort, NeedsACircuitOfTheSameSize) {
+    DeviceConfig config = small_config();
+    config.fifo_depth = 9;
+    EmulatedDevice device = emulated_device(config).value();
+    EXPECT_FALSE(port_with_circuit(device, {}, std::make_shared<std::string>()));
 }
 
 } // namespace

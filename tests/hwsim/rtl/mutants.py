@@ -55,8 +55,31 @@ FAULTS = [
     ("permit_unit.sv", "has_model_now = is_cleared ? '0 : has_model", "has_model_now = has_model"),
     ("permit_unit.sv", "$signed(slack) < $signed(least_slack)", "slack < least_slack"),
     ("permit_unit.sv", "number_of(release_element, release_thread)] = 1'b0", "number_of(release_element, 4'd0)] = 1'b0"),
+    ("search_element.sv", "counts.wait_port + 64'(without_port)", "counts.wait_port + 64'(without_port != 0)"),
+    ("ring_unit.sv", "ahead < QUEUE_DEPTH", "ahead <= QUEUE_DEPTH"),
+    ("ring_unit.sv", "stale <= way_level_next", "stale <= way_level"),
+    ("ring_unit.sv", "stale != 0 || flush", "stale != 0"),
+    ("ring_unit.sv", "32'(on_the_way) < 32'(memory_room)", "32'(copying) < 32'(memory_room)"),
+    ("ring_unit.sv", "next_is_missing) line_fault = device::BAD_ADDRESS", "next_is_missing) line_fault = device::BAD_DESCRIPTOR"),
+    ("ring_unit.sv", "common.last && pairs == 8'd1", "common.last"),
+    ("ring_unit.sv", " || !are_coordinates)", ")"),
+    ("ring_unit.sv", "tail - head_now > (32'd1 << log2_size)", "tail - head_now > (32'd2 << log2_size)"),
+    ("ring_unit.sv", "is_first_line ? 3'd2 : 3'd5", "is_first_line ? 3'd2 : 3'd4"),
+    ("ring_unit.sv", "lines_asked <= lines_asked + 64'd1", "lines_asked <= lines_asked"),
+    ("ring_unit.sv", "has_copied && copied_is_missing && !copied_is_stale", "has_copied && copied_is_missing"),
+    ("memory_unit.sv", "stale <= asked_next + under_way_next", "stale <= asked + under_way"),
+    ("memory_unit.sv", "WRITE_BITS'(WRITE_QUEUE_DEPTH) && !write_was_last", "WRITE_BITS'(WRITE_QUEUE_DEPTH)"),
+    ("memory_unit.sv", "arrives && stale == 0 && !flush", "arrives && !flush"),
+    ("memory_unit.sv", "!is_due || has_read || is_written || arrives", "!is_due || has_read || arrives"),
+    ("register_file.sv", "is_enabled_now || (clear && stop != device::NO_STOP)", "is_enabled_now"),
+    ("register_file.sv", "irq_pending & ~bus_data", "old_irq_pending & ~bus_data"),
+    ("register_file.sv", "bus_write && !was_enabled", "bus_write"),
+    ("register_file.sv", "if (bus_read) high_word <= high", "high_word <= high"),
+    ("coprocessor.sv", "'0 : request_element + 6'd1", "'0 : request_element"),
+    ("coprocessor.sv", "stop != device::NO_STOP && !clear", "1'b0"),
+    ("coprocessor.sv", "13'(FIFO_DEPTH) - fifo_used > 13'(entry_valid)", "13'(FIFO_DEPTH) != fifo_used"),
 ]
-TESTS = ("hwsim_rtl_unit_test", "hwsim_rtl_element_test")
+TESTS = ("hwsim_rtl_unit_test", "hwsim_rtl_element_test", "hwsim_rtl_device_test")
 
 
 def run(command, **options):

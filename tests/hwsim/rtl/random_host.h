@@ -29,7 +29,7 @@ public:
             for (const AddressedLine& line : lines) device.image_of(line.address) = line.line;
             headers_.push_back(lines.back().address);
         }
-        device.write(Register::control, control_reset);
+        hwsim::write(device.state, device.config, address_of(Register::control), control_reset);
         begin_anew();
     }
 
@@ -45,7 +45,7 @@ public:
         if (bus_.empty()) return {};
         const Write write = bus_.front();
         bus_.pop_front();
-        device.write(write.which, write.value);
+        hwsim::write(device.state, device.config, address_of(write.which), write.value);
         if (write.has(control_reset)) begin_anew();
         if (write.has(control_clear)) go_on();
         return write;
