@@ -49,22 +49,23 @@ module memory_unit #(
   localparam int PLACES = 2 * QUEUE_DEPTH;
   localparam int PLACE_BITS = $clog2(PLACES);
   typedef logic [PLACE_BITS-1:0] place_t;
-  typedef logic [PLACE_BITS:0] level_t;
+  localparam int LEVEL_BITS = PLACE_BITS + 1;
+  typedef logic [LEVEL_BITS-1:0] level_t;
   logic [35:0] requests[0:PLACES-1];  // element, thread, address
   place_t first, next, last;
   level_t asked, under_way, stale;
-  function automatic place_t after(input place_t place);
-    after = place == place_t'(PLACES - 1) ? '0 : place + 1'b1;
+  function automatic place_t place_after(input place_t place);
+    place_after = place == PLACE_BITS'(PLACES - 1) ? '0 : place + 1'b1;
   endfunction
-  assign accepts = asked != level_t'(QUEUE_DEPTH);
+  assign accepts = asked != LEVEL_BITS'(QUEUE_DEPTH);
 
   localparam int WRITE_PLACE_BITS = WRITE_QUEUE_DEPTH > 1 ? $clog2(WRITE_QUEUE_DEPTH) : 1;
   typedef logic [WRITE_PLACE_BITS-1:0] write_place_t;
   logic [537:0] queue[0:WRITE_QUEUE_DEPTH-1];  // address, line
   write_place_t write_first, write_end;
   logic [WRITE_BITS-1:0] waiting;
-  function automatic write_place_t after_write(input write_place_t place);
-    after_write = place == write_place_t'(WRITE_QUEUE_DEPTH - 1) ? '0 : place + 1'b1;
+  function automatic write_place_t write_place_after(input write_place_t place);
+    write_place_after = place == WRITE_PLACE_BITS'(WRITE_QUEUE_DEPTH - 1) ? '0 : place + 1'b1;
   endfunction
   assign write_room = WRITE_BITS'(WRITE_QUEUE_DEPTH) - waiting;
 
@@ -72,7 +73,7 @@ module memory_unit #(
 
   logic can_read, write_was_last;
   device::line_address_t read_address, first_write_address;
-  assign can_read = asked != 0 && under_way != level_t'(QUEUE_DEPTH);
+  assign can_read = asked != 0 && under_way != LEVEL_BITS'(QUEUE_DEPTH);
   assign writes = waiting != 0
       && (!can_read || (waiting == WRITE_BITS'(WRITE_QUEUE_DEPTH) && !write_was_last));
   assign reads = can_read && !writes;
@@ -106,19 +107,19 @@ module memory_unit #(
   assign is_stalled = waited_now > memory_limit;
 
   level_t asked_next, under_way_next;
-  assign asked_next = asked + level_t'(request) - level_t'(has_read);
-  assign under_way_next = under_way + level_t'(has_read) - level_t'(arrives);
+  assign asked_next = asked + LEVEL_BITS'(request) - LEVEL_BITS'(has_read);
+  assign under_way_next = under_way + LEVEL_BITS'(has_read) - LEVEL_BITS'(arrives);
 
   always_ff @(posedge clk) begin
     asked <= asked_next;
     under_way <= under_way_next;
     if (request) begin
       requests[last] <= {request_element, request_thread, request_address};
-      last <= after(last);
+      last <= place_after(last);
     end
-    if (has_read) next <= after(next);
+    if (has_read) next <= place_after(next);
     if (arrives) begin
-      first <= after(first);
+      first <= place_after(first);
       reads_done <= reads_done + 64'd1;
     end
     if (flush) stale <= asked_next + under_way_next;
@@ -126,11 +127,11 @@ module memory_unit #(
 
     if (write_valid) begin
       queue[write_end] <= {write_address, write_line};
-      write_end <= after_write(write_end);
+      write_end <= write_place_after(write_end);
     end
     waiting <= waiting + WRITE_BITS'(write_valid) - WRITE_BITS'(is_written);
     if (is_written) begin
-      write_first <= after_write(write_first);
+      write_first <= write_place_after(write_first);
       writes_done <= writes_done + 64'd1;
     end
     has_written <= is_written;

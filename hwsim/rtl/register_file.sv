@@ -118,22 +118,15 @@ module register_file #(
 
   // --- Reads. Of a pair of words, the high one is kept when the low one is read.
 
+  logic [device::ELEMENT_COUNTS_BITS-1:0] added;
   device::element_counts_t sums;
   always_comb begin
-    sums = '0;
-    for (int i = 0; i < ELEMENTS; i++) begin
-      device::element_counts_t one;
-      one = element_counts[i*device::ELEMENT_COUNTS_BITS+:device::ELEMENT_COUNTS_BITS];
-      sums.busy = sums.busy + one.busy;
-      sums.node_hits = sums.node_hits + one.node_hits;
-      sums.node_misses = sums.node_misses + one.node_misses;
-      sums.record_hits = sums.record_hits + one.record_hits;
-      sums.record_misses = sums.record_misses + one.record_misses;
-      sums.wait_memory = sums.wait_memory + one.wait_memory;
-      sums.wait_port = sums.wait_port + one.wait_port;
-      sums.wait_retire = sums.wait_retire + one.wait_retire;
-    end
+    added = '0;
+    for (int i = 0; i < ELEMENTS; i++)
+      for (int k = 0; k < device::ELEMENT_COUNTS_BITS / 64; k++)
+        added[64*k+:64] = added[64*k+:64] + element_counts[i*device::ELEMENT_COUNTS_BITS+64*k+:64];
   end
+  assign sums = added;
 
   logic [63:0] counter;
   always_comb

@@ -46,10 +46,11 @@ module ring_unit #(
     output logic [63:0] reads_done
 );
   localparam int QUEUE_BITS = QUEUE_DEPTH > 1 ? $clog2(QUEUE_DEPTH) : 1;
+  localparam int LEVEL_BITS = QUEUE_BITS + 1;
   typedef logic [QUEUE_BITS-1:0] place_t;
-  typedef logic [QUEUE_BITS:0] level_t;
-  function automatic place_t after(input place_t place);
-    after = place == place_t'(QUEUE_DEPTH - 1) ? '0 : place + 1'b1;
+  typedef logic [LEVEL_BITS-1:0] level_t;
+  function automatic place_t place_after(input place_t place);
+    place_after = place == QUEUE_BITS'(QUEUE_DEPTH - 1) ? '0 : place + 1'b1;
   endfunction
 
   logic is_faulty;  // between a fault and the stop
@@ -91,8 +92,8 @@ module ring_unit #(
   assign on_the_way = {1'b0, copying} + (QUEUE_BITS + 2)'(has_copied);
 
   logic wants_ring, wants_copy, reads;
-  assign wants_ring = works && way_level != level_t'(QUEUE_DEPTH) && fetched_now != tail && ahead < QUEUE_DEPTH;
-  assign wants_copy = works && way_level != level_t'(QUEUE_DEPTH) && !wants_ring && to_copy != 0
+  assign wants_ring = works && way_level != LEVEL_BITS'(QUEUE_DEPTH) && fetched_now != tail && ahead < QUEUE_DEPTH;
+  assign wants_copy = works && way_level != LEVEL_BITS'(QUEUE_DEPTH) && !wants_ring && to_copy != 0
       && 32'(on_the_way) < 32'(memory_room);
   assign read = wants_ring || wants_copy;
   assign reads = read && is_ready;
@@ -246,17 +247,17 @@ module ring_unit #(
   assign is_stalled = waited_now > memory_limit;
 
   level_t way_level_next;
-  assign way_level_next = way_level + level_t'(reads) - level_t'(arrives);
+  assign way_level_next = way_level + LEVEL_BITS'(reads) - LEVEL_BITS'(arrives);
 
   always_ff @(posedge clk) begin
     // Reads and their answers
     way_level <= way_level_next;
     if (reads) begin
       under_way[way_end] <= {!wants_ring, cycle, wants_ring ? fetched_now : {6'd0, copy_to}};
-      way_end <= after(way_end);
+      way_end <= place_after(way_end);
     end
     if (arrives) begin
-      way_first <= after(way_first);
+      way_first <= place_after(way_first);
       reads_done <= reads_done + 64'd1;
     end
     if (flush) stale <= way_level_next;
@@ -266,7 +267,7 @@ module ring_unit #(
     copied_is_stale <= arriving_is_stale;
     copied_to <= arriving_number[25:0];
     copied <= arriving_line;
-    copying <= copying + level_t'(reads && !wants_ring) - level_t'(arrives && arriving_is_copy);
+    copying <= copying + LEVEL_BITS'(reads && !wants_ring) - LEVEL_BITS'(arrives && arriving_is_copy);
     fetched <= fetched_now + 32'(reads && wants_ring);
     if (way_level == 0 || arrives) waited <= '0;
     else if (!is_stalled) waited <= waited_now + 32'd1;
@@ -274,10 +275,10 @@ module ring_unit #(
     // Lines that wait
     if (checked_valid && !flush) begin
       waiting[wait_end] <= {checked_is_missing, checked_is_intact, checked_asked, checked_number, checked_line};
-      wait_end <= after(wait_end);
+      wait_end <= place_after(wait_end);
     end
-    wait_level <= wait_level + level_t'(checked_valid) - level_t'(takes_now);
-    if (takes_now) wait_first <= after(wait_first);
+    wait_level <= wait_level + LEVEL_BITS'(checked_valid) - LEVEL_BITS'(takes_now);
+    if (takes_now) wait_first <= place_after(wait_first);
     head <= head_now + 32'(takes_now);
 
     // The descriptor in progress

@@ -22,10 +22,14 @@ LIMITS = {
     "check_unit": ((5_700, 2_400, 0, 0), (3_400, 920, 0, 0)),
     "line_cache": ((4_300, 1_400, 0, 16), (1_300, 320, 0, 16)),
     "search_thread": ((7_700, 3_250, 0, 0), (4_500, 3_250, 0, 0)),
-    "permit_unit": ((4_000, 1_350, 4, 5), (1_550, 1_200, 2, 0)),
+    "permit_unit": ((4_500, 1_700, 4, 5), (1_800, 1_500, 2, 0)),
+    "ring_unit": ((8_600, 4_200, 0, 0), (5_000, 3_150, 0, 0)),
+    "memory_unit": ((6_800, 2_700, 0, 2), (4_000, 1_250, 0, 2)),
+    "register_file": ((12_400, 380, 0, 0), (7_500, 380, 0, 0)),
 }
 FAMILIES = {"ECP5": "synth_ecp5", "Xilinx 7": "synth_xilinx -family xc7 -flatten"}
-FILES = ("device", "path_unit", "gap_unit", "check_unit", "line_cache", "search_thread", "search_element", "permit_unit")
+FILES = ("device", "path_unit", "gap_unit", "check_unit", "line_cache", "search_thread", "search_element", "permit_unit",
+         "ring_unit", "memory_unit", "register_file", "coprocessor")
 # Cells, and how many of a column they are.
 COLUMNS = (
     {r"LUT\d": 1, r"SRL.*": 1, r"RAM(32|64|128)X?.*": 2, r"TRELLIS_DPR16X4": 2, r"CCU2C": 2},
