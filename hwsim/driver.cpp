@@ -165,6 +165,7 @@ Line& image_of(Driver& driver, uint32_t line) {
 
 /// Puts lines into the ring once it has room, without the doorbell. A stopped device ignores them.
 void add_to_ring(Driver& driver, std::vector<Line> lines) {
+    driver.lines_made += lines.size();
     const auto has_room = [&] { return driver.tail + lines.size() - driver.head <= ring_size; };
     while (!has_room()) {
         ring_doorbell(driver);
@@ -203,6 +204,7 @@ void order_copies(Driver& driver, std::vector<uint32_t> lines) {
 
 void store(Driver& driver, const std::vector<AddressedLine>& lines) {
     std::vector<uint32_t> addresses;
+    driver.lines_made += lines.size();
     for (const AddressedLine& line : lines) {
         image_of(driver, line.address) = line.line;
         addresses.push_back(line.address);

@@ -54,8 +54,9 @@ struct Driver {
     std::deque<PendingCopy> copies;
     uint32_t tail = 0, head = 0; // of the ring; `head` as last read
     uint32_t next_sequence = 1;
-    uint32_t entries = 0;   // pushed since reset
-    uint32_t leaf_size = 4; // of work models; tool models have 1
+    uint32_t entries = 0;    // pushed since reset
+    uint64_t lines_made = 0; // descriptors, and lines of models
+    uint32_t leaf_size = 4;  // of work models; tool models have 1
 };
 
 /// A pair of bodies with its minimum distance over a segment.

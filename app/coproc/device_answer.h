@@ -55,6 +55,7 @@ struct DeviceBlock {
     uint64_t interval = 0; // of these, those after the permit of the previous block
     uint64_t nodes = 0;    // visited in both trees
     uint64_t pairs = 0;    // of records compared
+    uint64_t lines = 0;    // that the host made for it
     DeviceTotals after;    // at its permit; those of the previous block if nothing was asked
 };
 

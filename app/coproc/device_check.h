@@ -90,6 +90,9 @@ public:
                                    const core::SimulatorState& before);
     /// The current report of the device.
     hwsim::DeviceReport report() { return hwsim::report(driver_); }
+
+    /// Lines that the host has made so far: descriptors, and lines of models.
+    uint64_t lines_made() const { return driver_.lines_made; }
     /// Clears a stop. Questions pushed after the refused segment are discarded.
     void recover() { hwsim::recover(driver_); }
 

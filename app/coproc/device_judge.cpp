@@ -261,7 +261,9 @@ Result<void> DevicePipeline::State::settle() {
 
 Result<void> DevicePipeline::State::ask(Pending& pending) {
     pending.begin = pending.end = device_.state.cycle;
+    const uint64_t before = check_->lines_made();
     FEELER_TRY(pending.pushed, check_->push(pending.events, pending.before));
+    pending.block.lines = check_->lines_made() - before;
     pending.is_pushed = true;
     return {};
 }

@@ -48,12 +48,12 @@ private:
         const size_t end = std::min(services_.size(), here + control_.look_ahead + 1);
         for (; asked_ < end; ++asked_) {
             BlockTiming& block = made_.blocks[asked_];
-            block.asked = machine_.time();
             const BlockService& service = services_[asked_];
-            block.permitted = permit_time(service, block.asked, last_permit_);
+            block.permitted = queue_.next(service, machine_.time());
+            block.asked = queue_.requested();
             made_.busy += service.interval;
-            last_permit_ =
-                is_refused(asked_) ? core::infinity : block.permitted; // a refusal stops the device
+            made_.making += service.making;
+            if (is_refused(asked_)) queue_.stop();
         }
     }
 
@@ -93,7 +93,7 @@ private:
     PermitTiming made_;
     size_t asked_ = 0;
     uint32_t permitted_ = 0;
-    double last_permit_ = 0.0;
+    PermitQueue queue_;
 };
 
 } // namespace
@@ -150,6 +150,10 @@ void read_control(TableReader& table, ControlConfig& control) {
     read_within(table, "io_latency", 0.0, 10.0, control.servo.latency);
     read_within(table, "feed_override", 0.01, 10.0, control.servo.feed);
     read_count(table, "look_ahead", control.look_ahead);
+    constexpr double micro = 1e-6;
+    double line_time = control.line_time / micro;
+    read_within(table, "line_time_us", 0.0, 1000.0, line_time);
+    control.line_time = line_time * micro;
     table.finish();
 }
 

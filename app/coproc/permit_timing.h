@@ -13,6 +13,7 @@ namespace app {
 struct ControlConfig {
     core::ServoTiming servo;
     uint32_t look_ahead = 256; // blocks read, and permits requested, ahead of the machine
+    double line_time = 1e-6;   // that it needs to make a line for the device, s
 };
 
 /// The time that a device needs for each block, and whether it refuses it. Measured while blocks
@@ -21,18 +22,33 @@ struct BlockService {
     double seconds = 0.0; // from request to permit
     bool refused = false;
     double interval = 0.0; // from the permit of the previous block
+    double making = 0.0;   // of the control, before the request
 };
 
-/// Latest permit time of a block requested at `asked`, if the previous block was permitted at
-/// `before`.
-inline double permit_time(const BlockService& service, double asked, double before) {
-    return std::max(before + service.interval, asked + service.seconds);
-}
+/// The latest times of permits of blocks, one after the other: the control makes the lines of a
+/// block when it has read it and made those of the one before, and the device permits it when it
+/// is served and its interval after the one before is over.
+class PermitQueue {
+public:
+    /// The permit of the next block, which the control has read at `read`.
+    double next(const BlockService& service, double read) {
+        requested_ = std::max(requested_, read) + service.making;
+        permitted_ = std::max(permitted_ + service.interval, requested_ + service.seconds);
+        return permitted_;
+    }
+    /// When the last block was requested.
+    double requested() const { return requested_; }
+    /// A refusal stops the device.
+    void stop() { permitted_ = core::infinity; }
+
+private:
+    double requested_ = 0.0, permitted_ = 0.0;
+};
 
 /// When a block was requested, permitted, needed and entered, in seconds from the start of the
 /// program.
 struct BlockTiming {
-    double asked = core::infinity;
+    double asked = core::infinity;     // when the control had made its lines
     double permitted = core::infinity; // or refused
     double due = core::infinity;       // when the machine needed the permit; infinite for blocks
                                        // without motion and for the first with motion
@@ -51,11 +67,13 @@ struct PermitTiming {
     std::optional<size_t> tightest; // the block with the least slack
     size_t missed = 0;              // number of late permits
     double busy = 0.0;              // working time of the device, s
+    double making = 0.0;            // of the control, for the lines of all requested blocks, s
 };
 
-/// Simulates the machine with its plan and the device. The device starts a block when the control
-/// has read it, and permits it at the latest after its service time, and its interval after the
-/// previous block. A device that is less loaded than in the measurement answers earlier.
+/// Simulates the machine with its plan, the control and the device. The control makes the lines of
+/// a block when it has read it; the device then starts it, and permits it at the latest after its
+/// service time, and its interval after the previous block. A device that is less loaded than in
+/// the measurement answers earlier.
 ///
 /// `past_refusals`: refused blocks are executed, as if a person had allowed them.
 PermitTiming timed_with_permits(const std::vector<core::PermitMotion>& plan,

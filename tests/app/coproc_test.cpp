@@ -24,6 +24,19 @@ core::MotionTime hop(double seconds, double length) {
             .acceleration = 2.0 * peak / seconds};
 }
 
+TEST(PermitTiming, RequestsABlockWhenTheControlHasMadeItsLines) {
+    const std::vector<core::PermitMotion> plan = {
+        {hop(1.0, 10), 0}, {hop(1.0, 10), 1}, {hop(1.0, 10), 2}};
+    const PermitTiming timing = timed_with_permits(
+        plan, std::vector<BlockService>(3, {.seconds = 0.1, .making = 0.5}), {});
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(timing.blocks[i].asked, 0.5 + 0.5 * static_cast<double>(i), 0.002);
+        EXPECT_NEAR(timing.blocks[i].permitted, timing.blocks[i].asked + 0.1, 1e-9);
+    }
+    EXPECT_NEAR(timing.making, 1.5, 1e-9);
+    EXPECT_GT(timing.taken, 3.5); // the first block waits for the control
+}
+
 TEST(PermitTiming, WaitsForALateDeviceAndContinues) {
     const std::vector<core::PermitMotion> plan = {
         {hop(1.0, 10), 0}, {hop(1.0, 10), 1}, {hop(1.0, 10), 2}};
@@ -190,10 +203,10 @@ TEST(CoprocessorRun, RefusesToTouchWhereRoundedCornersLeaveTheWayOpen) {
 TEST(CoprocessorRun, AFasterDeviceKeepsUpWhereASlowOneDoesNot) {
     const auto run = run_with_coprocessor(plate("clamped_plate.nc"));
     ASSERT_TRUE(run.has_value());
-    const PermitTiming fast = timed_with_permits(run->plan, services_of(*run, 100), {}, true);
+    const PermitTiming fast = timed_with_permits(run->plan, services_of(*run, 100, {}), {}, true);
     EXPECT_EQ(fast.missed, 0U);
     EXPECT_NEAR(fast.taken, fast.planned, 0.01);
-    std::vector<BlockService> slow = services_of(*run, 1);
+    std::vector<BlockService> slow = services_of(*run, 1, {});
     for (BlockService& service : slow) {
         service.seconds *= 1e4;
         service.interval *= 1e4;
@@ -339,7 +352,7 @@ TEST(CoprocessorReport, SaysWhyABlockIsRefused) {
     auto run = run_with_coprocessor(job);
     ASSERT_TRUE(run.has_value());
     result.run = *std::move(run);
-    result.timing = timed_with_permits(result.run.plan, services_of(result.run, 100), {});
+    result.timing = timed_with_permits(result.run.plan, services_of(result.run, 100, {}), {});
     EXPECT_NE(coprocessor_csv(result).find("too-long: "), std::string::npos);
 }
 

@@ -43,6 +43,12 @@ inline void expect_the_functional_answers(uint32_t seed, const DeviceConfig& con
         }
         ASSERT_TRUE(device.finish());
         ASSERT_GT(device.retired.size(), 2U);
+        // A companion has the same.
+        for (const Register r :
+             {Register::permit_seq, Register::stop_seq, Register::found_low, Register::found_tool,
+              Register::found_work, Register::found_sample, Register::found_seq})
+            device.read(r);
+        for (uint32_t i = 0; i < counter_count; ++i) device.read(static_cast<Counter>(i));
         for (const Retired& r : device.retired)
             if (r.segment.kind != SegmentKind::model) {
                 ASSERT_EQ(r.answer, expected(device, r.segment));

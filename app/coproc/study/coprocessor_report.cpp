@@ -22,8 +22,9 @@ std::optional<double> fraction(uint64_t part, uint64_t whole) {
 
 CoprocessorResult in_time(CoprocessorRun run, const DeviceFile& file, bool past_refusals) {
     CoprocessorResult result;
-    result.timing = timed_with_permits(run.plan, services_of(run, file.device.clock_mhz),
-                                       file.control, past_refusals);
+    result.timing =
+        timed_with_permits(run.plan, services_of(run, file.device.clock_mhz, file.control),
+                           file.control, past_refusals);
     result.fits = least_clocks(run, file.control);
     result.file = file;
     result.run = std::move(run);
@@ -82,6 +83,16 @@ double joules(const CoprocessorResult& result, double working) {
            + part(energy.memory_line, moved) + energy.idle_watts * working;
 }
 
+/// What the control makes for the device.
+uint64_t lines_made(const CoprocessorResult& result) {
+    uint64_t lines = 0;
+    for (const DeviceBlock& block : result.run.blocks) lines += block.lines;
+    return lines;
+}
+double share_of_control(const CoprocessorResult& result) {
+    return result.timing.taken > 0.0 ? result.timing.making / result.timing.taken : 0.0;
+}
+
 std::string block_text(const CoprocessorResult& result, size_t block) {
     return fmt::format("block {}, line {}", block, result.run.check.blocks[block].line);
 }
@@ -131,7 +142,8 @@ Json config_json(const CoprocessorResult& result) {
              {{"servo_period", c.servo.period},
               {"io_latency", c.servo.latency},
               {"feed_override", c.servo.feed},
-              {"look_ahead", c.look_ahead}}}};
+              {"look_ahead", c.look_ahead},
+              {"line_time_us", 1e6 * c.line_time}}}};
 }
 
 /// A finite time, else null.
@@ -146,6 +158,7 @@ Json block_json(const CoprocessorResult& result, size_t i) {
             {"cycles", block.cycles},
             {"nodes", block.nodes},
             {"pairs", block.pairs},
+            {"lines", block.lines},
             {"asked", known(timing.asked)},
             {"permitted", known(block.permit.permitted ? timing.permitted : core::infinity)},
             {"due", known(timing.due)},
@@ -237,12 +250,16 @@ std::string coprocessor_text(const CoprocessorResult& result) {
     };
     add("permits", verdict_text(result));
     add("kept up", slack_text(result));
-    add("time", fmt::format("{} planned, {} actual", time_text(result.timing.planned),
+    add("time", fmt::format("{} planned, {} {}", time_text(result.timing.planned),
+                            result.timing.refused ? "stops after" : "takes",
                             time_text(result.timing.taken)));
     add("work",
         fmt::format("{} blocks, {} queries, {} nodes, {} pairs, {} cycles",
                     result.run.blocks.size(), totals[Counter::queries], totals[Counter::nodes],
                     totals[Counter::pair_tests], totals[Counter::cycles]));
+    add("control", fmt::format("makes {} lines for the coprocessor in {}: {:.3g} % of the time",
+                               lines_made(result), time_text(result.timing.making),
+                               100.0 * share_of_control(result)));
     add("latency", fmt::format("median {}, 99th percentile {}, maximum {}", time_text(f.p50),
                                time_text(f.p99), time_text(f.longest)));
     add("rate", fmt::format("{:.0f} queries per second while busy; busy {:.3g} % of the time",
@@ -269,6 +286,8 @@ std::string coprocessor_json(const CoprocessorResult& result) {
     Json counters = Json::object();
     for (size_t i = 0; i < counter_names.size(); ++i)
         counters[counter_names[i]] = result.run.totals.counters[i];
+    // The times of the machine are not those of the device, so no deadlines are set in it.
+    counters["least_slack"] = nullptr;
     Json fits = Json::array();
     for (const DeviceFit& fit : result.fits)
         fits.push_back({{"elements", fit.elements},
@@ -291,6 +310,8 @@ std::string coprocessor_json(const CoprocessorResult& result) {
            timing.tightest ? Json(timing.blocks[*timing.tightest].slack()) : Json(nullptr)},
           {"tightest", timing.tightest ? Json(*timing.tightest) : Json(nullptr)},
           {"busy_share", f.busy_fraction},
+          {"control_seconds", timing.making},
+          {"control_share", share_of_control(result)},
           {"queries_per_second", f.queries_per_second},
           {"latency", {{"p50", f.p50}, {"p99", f.p99}, {"max", f.longest}}},
           {"stalls",

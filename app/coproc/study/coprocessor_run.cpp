@@ -73,7 +73,7 @@ core::Result<void> ParallelCoprocessor::finish() {
         if (auto finished = device->finish(); !finished) return finished;
         std::vector<BlockCycles>& cycles = made_.cycles_by_elements[elements];
         for (const DeviceBlock& block : device->blocks())
-            cycles.push_back({block.cycles, block.interval});
+            cycles.push_back({block.cycles, block.interval, block.lines});
         cycles.resize(made_.blocks.size());
     }
     return {};
@@ -101,30 +101,35 @@ core::Result<CoprocessorRun> run_with_coprocessor(const CoprocessorJob& job) {
 
 namespace {
 
-BlockService service_of(const BlockCycles& cycles, uint32_t clock_mhz) {
+BlockService service_of(const BlockCycles& cycles, uint32_t clock_mhz,
+                        const ControlConfig& control) {
     const auto seconds = [&](uint64_t count) {
         return static_cast<double>(count) / (1e6 * clock_mhz);
     };
-    return {.seconds = seconds(cycles.latency), .interval = seconds(cycles.interval)};
+    return {.seconds = seconds(cycles.latency),
+            .interval = seconds(cycles.interval),
+            .making = static_cast<double>(cycles.lines) * control.line_time};
 }
 
 /// Whether no permit is late, given the times of a machine that never waits.
 bool keeps_up(const std::vector<BlockTiming>& undisturbed, const std::vector<BlockCycles>& cycles,
-              uint32_t clock_mhz) {
-    double permitted = 0.0;
+              uint32_t clock_mhz, const ControlConfig& control) {
+    PermitQueue queue;
     for (size_t i = 0; i < undisturbed.size(); ++i) {
-        permitted = permit_time(service_of(cycles[i], clock_mhz), undisturbed[i].asked, permitted);
-        if (permitted > undisturbed[i].due) return false;
+        const BlockService service = service_of(cycles[i], clock_mhz, control);
+        if (queue.next(service, undisturbed[i].asked) > undisturbed[i].due) return false;
     }
     return true;
 }
 
 } // namespace
 
-std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz) {
+std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz,
+                                      const ControlConfig& control) {
     std::vector<BlockService> services;
     for (const DeviceBlock& block : run.blocks) {
-        services.push_back(service_of({block.cycles, block.interval}, clock_mhz));
+        services.push_back(
+            service_of({block.cycles, block.interval, block.lines}, clock_mhz, control));
         services.back().refused = !block.permit.permitted;
     }
     return services;
@@ -139,7 +144,7 @@ std::vector<DeviceFit> least_clocks(const CoprocessorRun& run, const ControlConf
     for (const auto& [elements, cycles] : run.cycles_by_elements) {
         const auto enough =
             std::find_if(clocks.begin(), clocks.end(), [&, &cycles = cycles](uint32_t clock) {
-                return keeps_up(undisturbed, cycles, clock);
+                return keeps_up(undisturbed, cycles, clock, control);
             });
         fits.push_back({elements, enough == clocks.end() ? std::nullopt : std::optional(*enough)});
     }

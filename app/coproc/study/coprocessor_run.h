@@ -16,6 +16,7 @@ namespace app {
 struct BlockCycles {
     uint64_t latency = 0;  // from its first word to its permit
     uint64_t interval = 0; // of these, those after the permit of the previous block
+    uint64_t lines = 0;    // that the host made before
 };
 
 /// The run of a program with a coprocessor emulated cycle by cycle.
@@ -59,7 +60,8 @@ constexpr std::array<uint32_t, 12> clocks = {1, 2, 5, 10, 20, 25, 50, 75, 100, 1
 constexpr std::array<uint32_t, 5> tried_elements = {1, 2, 4, 8, 16};
 
 /// The service time of each block with a device at this clock.
-std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz);
+std::vector<BlockService> services_of(const CoprocessorRun& run, uint32_t clock_mhz,
+                                      const ControlConfig& control);
 
 /// For each emulated number of elements, the lowest clock at which no permit would be late.
 std::vector<DeviceFit> least_clocks(const CoprocessorRun& run, const ControlConfig& control);
