@@ -27,8 +27,8 @@ core::MotionTime hop(double seconds, double length) {
 TEST(PermitTiming, RequestsABlockWhenTheControlHasMadeItsLines) {
     const std::vector<core::PermitMotion> plan = {
         {hop(1.0, 10), 0}, {hop(1.0, 10), 1}, {hop(1.0, 10), 2}};
-    const PermitTiming timing = timed_with_permits(
-        plan, std::vector<BlockService>(3, {.seconds = 0.1, .making = 0.5}), {});
+    const PermitTiming timing =
+        timed_with_permits(plan, std::vector<BlockService>(3, {.seconds = 0.1, .making = 0.5}), {});
     for (size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(timing.blocks[i].asked, 0.5 + 0.5 * static_cast<double>(i), 0.002);
         EXPECT_NEAR(timing.blocks[i].permitted, timing.blocks[i].asked + 0.1, 1e-9);
