@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "Coprocessor.h"
-#include "SmallCoprocessor.h"
+#include <Coprocessor.h>
+#include <SmallCoprocessor.h>
 #include "hwsim/circuit_port.h"
 
 namespace hwsim {

@@ -208,6 +208,48 @@ bool is_doubtful_arc(const core::Event& event, const core::Vec3& step) {
     return length > 0.0 && length < 1.5 * of_steps + rounding;
 }
 
+double squared(double x) { return x * x; }
+
+/// How far from a circle of its start's radius an arc ends: Grbl follows that circle to the last
+/// chord, and accepts up to 0.5 mm.
+double radius_error(const core::Motion& motion) {
+    double from = 0.0, to = 0.0;
+    for (int by = 1; by <= 2; ++by) {
+        const int axis = (motion.arc->normal + by) % 3;
+        const auto i = static_cast<size_t>(axis);
+        from += squared(*motion.from[i] - motion.arc->centre[axis]);
+        to += squared(*motion.to[i] - motion.arc->centre[axis]);
+    }
+    return std::abs(std::sqrt(to) - std::sqrt(from));
+}
+
+/// How far Grbl's centre of an arc that is given by its radius may be off: it computes the height
+/// of the centre above the chord in single floats, from a difference.
+double centre_error(const core::Motion& motion) {
+    constexpr double rounding = 2.4e-7; // of a single float, with that of its operands
+    double radius = 0.0, chord = 0.0;   // squares
+    for (int by = 1; by <= 2; ++by) {
+        const int axis = (motion.arc->normal + by) % 3;
+        const auto i = static_cast<size_t>(axis);
+        radius += squared(*motion.from[i] - motion.arc->centre[axis]);
+        chord += squared(*motion.to[i] - *motion.from[i]);
+    }
+    const double height = std::max(0.0, 4.0 * radius - chord), off = 4.0 * radius * rounding;
+    const double less = std::sqrt(height) - std::sqrt(std::max(0.0, height - off));
+    return 0.5 * std::max(less, std::sqrt(height + off) - std::sqrt(height));
+}
+
+/// Lets arcs be as far from their paths as Grbl may make them.
+void widen_arcs(std::vector<core::Event>& events, bool by_radius) {
+    constexpr double negligible = 0.005; // mm, as decimals of programs are rounded
+    for (core::Event& event : events) {
+        auto* const motion = std::get_if<core::Motion>(&event);
+        if (!motion || !motion->arc) continue;
+        const double off = by_radius ? centre_error(*motion) : radius_error(*motion);
+        if (off > negligible) motion->path_error += off;
+    }
+}
+
 /// The events with arcs of less than a turn.
 std::vector<core::Event> with_short_arcs(std::vector<core::Event> events) {
     for (core::Event& event : events)
@@ -692,6 +734,7 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
     std::erase_if(events,
                   [](const core::Event& event) { return motion_in(event) && !moves(event); });
     for (core::Event& event : events) lower_by(event, shift_);
+    widen_arcs(events, text.find('R') != std::string::npos);
     verdict.moves = std::any_of(events.begin(), events.end(), moves);
     verdict.fills_planner =
         std::any_of(events.begin(), events.end(),

@@ -142,6 +142,37 @@ core::SpindleChange spindle_of(const LiveMotion& motion, bool speed_by_hand) {
     return spindle;
 }
 
+/// What is wrong with LinuxCNC's limits for a rapid without a tolerance: how far its corners are
+/// rounded follows from those of the ini file, and pins (ini.x.max_acceleration) change them.
+std::string problem_of_speeds(const LiveMotion& motion, const core::Machine& machine) {
+    constexpr double slack = 0.01;
+    const bool is_rapid = motion.purpose == FEELER_RAPID || motion.purpose == FEELER_TOOL_CHANGE;
+    if (!is_rapid || moves_others(motion) || motion.blending != FEELER_BLENDED
+        || motion.tolerance > 0.0)
+        return {};
+    double square = 0.0, speed = core::infinity, acceleration = core::infinity;
+    for (size_t i = 0; i < 3; ++i)
+        square += (motion.to[i] - motion.from[i]) * (motion.to[i] - motion.from[i]);
+    for (size_t i = 0; i < 3; ++i) {
+        const double share = std::abs(motion.to[i] - motion.from[i]) / std::sqrt(square);
+        if (!(share > 0.0)) continue;
+        const core::MachineAxis& axis = machine.axes[i];
+        if (axis.rapid) speed = std::min(speed, *axis.rapid / 60.0 / share);
+        if (axis.acceleration) acceleration = std::min(acceleration, *axis.acceleration / share);
+    }
+    const char* const why = ", so how far corners are rounded is not known. Set the pins "
+                            "ini.*.max_velocity and ini.*.max_acceleration back to the ini file.";
+    if (acceleration < core::infinity && motion.acceleration < (1.0 - slack) * acceleration)
+        return fmt::format("LinuxCNC makes this rapid with {:.4g} mm/s2, and the ini file says "
+                           "{:.4g}{}",
+                           motion.acceleration, acceleration, why);
+    if (motion.most_speed > (1.0 + slack) * speed)
+        return fmt::format("LinuxCNC makes this rapid with up to {:.4g} mm/s, and the ini file "
+                           "says {:.4g}{}",
+                           motion.most_speed, speed, why);
+    return {};
+}
+
 } // namespace
 
 // What LinuxCNC does at corners is in the ring.
@@ -360,7 +391,7 @@ std::string LiveCheck::objection(const LiveMotion& motion) const {
                                core::axis_letters[i]);
     if (motion.shape == FEELER_ARC && !main_axis(vector_of(motion.normal)))
         return "Its arc lies in no main plane.";
-    return {};
+    return problem_of_speeds(motion, judge_.setup().machine);
 }
 
 LiveAnswer LiveCheck::refused(LiveAnswer answer) {

@@ -22,6 +22,8 @@ feeler_segment in_mm(feeler_segment motion, double unit) {
             if (!core::is_rotary(i)) scale((*values)[i]);
     for (double& value : motion.centre) scale(value);
     scale(motion.feed);
+    scale(motion.most_speed);
+    scale(motion.acceleration);
     scale(motion.tolerance);
     scale(motion.tool_length);
     return motion;

@@ -313,6 +313,22 @@ TEST_F(CheckedLines, AreNoFlatArcs) {
     EXPECT_TRUE(passes("G2X1Y0I1J0")); // a full circle
 }
 
+/// Grbl goes along the circle of the start, also where the end is on a smaller one, and computes
+/// the centre of an arc with a radius in single floats.
+TEST_F(CheckedLines, MayBeArcsBesideTheirPaths) {
+    const auto is_clear = [&](double x, const char* line) {
+        check_.synchronise(facts_at_zero(), core::Vec3(x, -170.6681, 20), number_);
+        return passes(line);
+    };
+    // The outermost point keeps 2.05 of 2 mm from the clamp on a spiral, and 1.8 on the circle.
+    EXPECT_FALSE(is_clear(23.1066, "G3X22.6462Y170.5005I-468.9066J170.6681F500"));
+    EXPECT_TRUE(is_clear(22.6066, "G3X22.1462Y170.5005I-468.9066J170.6681F500"));
+    EXPECT_TRUE(is_clear(22.8066, "G3X22.8066Y170.6681I-468.9066J170.6681F500")); // a circle
+    // Nearly a semicircle, at 2.03 and 2.3 mm: its centre may be 0.08 mm off.
+    EXPECT_FALSE(is_clear(-117.6155, "G3X-117.6155Y170.6681R170.66812F500"));
+    EXPECT_TRUE(is_clear(-117.8855, "G3X-117.8855Y170.6681R170.66812F500"));
+}
+
 /// Without a model nothing passes.
 TEST_F(CheckedLines, SayWhyThereIsNoModel) {
     check_ = open("memory_limit = 0.001\n" + bodies);

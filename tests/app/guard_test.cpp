@@ -109,6 +109,8 @@ public:
         next.speed = 1000.0;
         next.blending = FEELER_EXACT_STOP;
         next.feed = 10.0;
+        next.most_speed = 10.0; // of the machine's limits
+        next.acceleration = 1e4;
     }
 
     /// Queues a line to X, Y and Z of the tip of tool 1 in G54.
@@ -577,6 +579,27 @@ TEST_F(GuardedMachine, KnowsWhereTheMachineRests) {
         machine.rapid(88, -50, 20); // 8 mm around the clamp, unless the corner is cut
         check_all(guard);
         EXPECT_EQ(machine.permitted(), 2U + from_rest);
+    }
+}
+
+/// Pins of LinuxCNC change its limits while it runs.
+TEST_F(GuardedMachine, RefusesRapidsWithOtherLimitsThanItKnows) {
+    const core::MachineAxis& axis = setup_.setup.machine.axes[0];
+    ASSERT_TRUE(axis.acceleration && axis.rapid);
+    struct Limits {
+        double acceleration, speed;
+        bool is_permitted;
+    };
+    for (const Limits& limits : {Limits{1.0, 1.0, true}, {0.98, 1.0, false}, {1.0, 1.02, false}}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.next.blending = FEELER_BLENDED;
+        machine.rapid(0, 0, 50);
+        machine.next.acceleration = limits.acceleration * *axis.acceleration;
+        machine.next.most_speed = limits.speed * *axis.rapid / 60.0;
+        machine.rapid(20, 0, 50);
+        check_all(guard);
+        EXPECT_EQ(machine.permitted(), limits.is_permitted ? 2U : 1U);
     }
 }
 

@@ -31,7 +31,7 @@
 
 #define FEELER_RING_KEY 0x46656c72 /* of the shared memory (System V) */
 #define FEELER_RING_MAGIC 0x46656c72u
-#define FEELER_RING_VERSION 2u
+#define FEELER_RING_VERSION 3u
 #define FEELER_RING_SEGMENTS 4096u
 #define FEELER_JOINTS 16
 /* Where joint_aside is: at this part of the straight way from `from` to `to`, which is no simple part
@@ -75,6 +75,7 @@ struct feeler_segment {
     uint32_t turns_on;     /* the spindle: 0 does not turn, 1 clockwise, 2 counterclockwise */
     double speed;          /* of the spindle, as commanded and overridden, 1/min */
     double feed;           /* as programmed, units per second */
+    double most_speed, acceleration; /* LinuxCNC's limits for this motion, units per second (squared) */
     double tolerance;      /* of a blend; 0: none, as between rapids of a program that states none */
     double from[9], to[9];
     double centre[3], normal[3]; /* of an arc */

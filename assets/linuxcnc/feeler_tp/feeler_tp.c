@@ -379,6 +379,8 @@ static int accept_motion(struct call *c, enum feeler_shape shape) {
         s->speed = speed < 0.0 ? -speed : speed;
     }
     s->feed = c->vel;
+    s->most_speed = c->max_vel;
+    s->acceleration = c->acc;
     c->begin = goal;
     /* Rapids and feeds are never blended with each other. */
     c->blends = s->blending == FEELER_BLENDED;
