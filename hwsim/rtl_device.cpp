@@ -1,9 +1,9 @@
 #include "hwsim/rtl_device.h"
 
-#include <fmt/format.h>
-
 #include <Coprocessor.h>
 #include <SmallCoprocessor.h>
+#include <fmt/format.h>
+
 #include "hwsim/circuit_port.h"
 
 namespace hwsim {
