@@ -101,10 +101,14 @@ void take_speeds(core::Machine& machine, const IniFile& ini, double unit) {
         const auto value = [&](const char* name) -> std::optional<double> {
             const auto found = ini.values.find(fmt::format("_ini[axis_{}]{}", letter, name));
             if (found == ini.values.end() || !(found->second > 0.0)) return {};
-            return found->second * scale;
+            return found->second;
         };
-        if (const auto speed = value("max_velocity")) machine.axes[i].rapid = 60.0 * *speed;
-        if (const auto most = value("max_acceleration")) machine.axes[i].acceleration = *most;
+        // External offsets get a part of both; LinuxCNC takes 0.1 in place of more than 0.9.
+        const double stated = value("offset_av_ratio").value_or(0.0);
+        const double share = scale * (1.0 - (stated > 0.9 ? 0.1 : stated));
+        if (const auto speed = value("max_velocity")) machine.axes[i].rapid = 60.0 * share * *speed;
+        if (const auto most = value("max_acceleration"))
+            machine.axes[i].acceleration = share * *most;
     }
     if (is_trivial(ini)) return;
     // Limits along X, Y and Z of the tip are others along the axes: what counts is how fast the tip

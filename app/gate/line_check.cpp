@@ -208,33 +208,34 @@ bool is_doubtful_arc(const core::Event& event, const core::Vec3& step) {
     return length > 0.0 && length < 1.5 * of_steps + rounding;
 }
 
-double squared(double x) { return x * x; }
+/// Squares of the radii at the start and the end of an arc, and of its chord.
+struct ArcSquares {
+    double start = 0.0, end = 0.0, chord = 0.0;
+
+    explicit ArcSquares(const core::Motion& motion) {
+        const auto square = [](double x) { return x * x; };
+        for (int by = 1; by <= 2; ++by) {
+            const int axis = (motion.arc->normal + by) % 3;
+            const auto i = static_cast<size_t>(axis);
+            start += square(*motion.from[i] - motion.arc->centre[axis]);
+            end += square(*motion.to[i] - motion.arc->centre[axis]);
+            chord += square(*motion.to[i] - *motion.from[i]);
+        }
+    }
+};
 
 /// How far from a circle of its start's radius an arc ends: Grbl follows that circle to the last
 /// chord, and accepts up to 0.5 mm.
-double radius_error(const core::Motion& motion) {
-    double from = 0.0, to = 0.0;
-    for (int by = 1; by <= 2; ++by) {
-        const int axis = (motion.arc->normal + by) % 3;
-        const auto i = static_cast<size_t>(axis);
-        from += squared(*motion.from[i] - motion.arc->centre[axis]);
-        to += squared(*motion.to[i] - motion.arc->centre[axis]);
-    }
-    return std::abs(std::sqrt(to) - std::sqrt(from));
+double radius_error(const ArcSquares& arc) {
+    return std::abs(std::sqrt(arc.end) - std::sqrt(arc.start));
 }
 
 /// How far Grbl's centre of an arc that is given by its radius may be off: it computes the height
 /// of the centre above the chord in single floats, from a difference.
-double centre_error(const core::Motion& motion) {
+double centre_error(const ArcSquares& arc) {
     constexpr double rounding = 2.4e-7; // of a single float, with that of its operands
-    double radius = 0.0, chord = 0.0;   // squares
-    for (int by = 1; by <= 2; ++by) {
-        const int axis = (motion.arc->normal + by) % 3;
-        const auto i = static_cast<size_t>(axis);
-        radius += squared(*motion.from[i] - motion.arc->centre[axis]);
-        chord += squared(*motion.to[i] - *motion.from[i]);
-    }
-    const double height = std::max(0.0, 4.0 * radius - chord), off = 4.0 * radius * rounding;
+    const double height = std::max(0.0, 4.0 * arc.start - arc.chord);
+    const double off = 4.0 * arc.start * rounding;
     const double less = std::sqrt(height) - std::sqrt(std::max(0.0, height - off));
     return 0.5 * std::max(less, std::sqrt(height + off) - std::sqrt(height));
 }
@@ -245,7 +246,8 @@ void widen_arcs(std::vector<core::Event>& events, bool by_radius) {
     for (core::Event& event : events) {
         auto* const motion = std::get_if<core::Motion>(&event);
         if (!motion || !motion->arc) continue;
-        const double off = by_radius ? centre_error(*motion) : radius_error(*motion);
+        const ArcSquares arc(*motion);
+        const double off = by_radius ? centre_error(arc) : radius_error(arc);
         if (off > negligible) motion->path_error += off;
     }
 }
