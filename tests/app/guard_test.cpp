@@ -582,6 +582,21 @@ TEST_F(GuardedMachine, KnowsWhereTheMachineRests) {
     }
 }
 
+TEST_F(GuardedMachine, SaysWhereItStopsAndThatItStillDoes) {
+    const uint64_t last = machine_.rapid(0, 0, 30);
+    machine_.line(70, 0, 5, FEELER_TOOL_CHANGE);
+    EXPECT_EQ(permitted(), last);
+    EXPECT_THAT(told_.back(), HasSubstr("before the way to the tool change, after line 2: "));
+    ASSERT_EQ(machine_.ring->latched, 1U);
+    app::Guard next(setup_.setup, *machine_.ring, 1.0, 0.1);
+    listen(next);
+    told_.clear();
+    next.step();
+    next.step();
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_THAT(told_[0], HasSubstr("an earlier violation is not cleared yet"));
+}
+
 /// Pins of LinuxCNC change its limits while it runs.
 TEST_F(GuardedMachine, RefusesRapidsWithOtherLimitsThanItKnows) {
     const core::MachineAxis& axis = setup_.setup.machine.axes[0];

@@ -205,6 +205,26 @@ TEST(Driver, PermitsASegmentWhenAllOfItsPairsAreKeptApart) {
     EXPECT_EQ(report(driver).stop, Stop::violation);
 }
 
+TEST(Driver, CountsTheLinesThatItMakes) {
+    EmulatedDevice device = emulated_device(bench_config()).value();
+    Driver driver = open_device(port_with_companion(device)).value();
+    const SlotNumber tool = load_tool(driver, holder).value();
+    core::CutModel stock = raw.uncut(1.0);
+    const SlotNumber work = load_stock(driver, stock).value();
+    const auto cutter = std::make_shared<core::Cutter>(
+        core::make_cutter(core::RevolvedProfile{{{0, 5, 12, 5, 0}}}, 0.0));
+    for (int i = 0; i < 5; ++i) {
+        core::cut(stock, {cutter, {2.0 * i, 0, -4}, {2.0 * i, 9, -4}});
+        EXPECT_TRUE(update_stock(driver, work, stock));
+        EXPECT_TRUE(push(driver, {{0, 0, 2}, {9, 9, 2}, {{tool, work, 1.0}}}));
+    }
+    ASSERT_EQ(wait_for_all(driver).permitted, 5U);
+    // The device has read each of them once.
+    const uint32_t read = hwsim::read(device.state, device.config, address_of(Counter::host_lines));
+    EXPECT_EQ(driver.lines_made, read);
+    EXPECT_GT(read, 500U);
+}
+
 TEST(Driver, RefusesWhatItCannotSay) {
     FunctionalDevice device = functional_device(bench_config()).value();
     Driver driver = open_device(port_of(device)).value();
