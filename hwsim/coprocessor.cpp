@@ -410,6 +410,8 @@ uint32_t read_of_device(const CoprocessorState& s, const DeviceConfig& config, R
         return identification_word;
     case Register::version:
         return version_word;
+    case Register::volumes:
+        return static_cast<uint32_t>(config.volumes);
     case Register::elements:
         return config.elements;
     case Register::threads:
@@ -541,7 +543,7 @@ uint32_t read(CoprocessorState& s, const DeviceConfig& config, uint32_t address)
         return static_cast<uint32_t>(value);
     }
     const auto r = static_cast<Register>(address);
-    if (r < Register::stop) return read_of_device(s, config, r);
+    if (r < Register::stop || r == Register::volumes) return read_of_device(s, config, r);
     return r < Register::ring_base_low ? read_of_stop(s, r) : read_of_ring(s, r);
 }
 

@@ -39,7 +39,8 @@ void answer_first(FunctionalDevice& device) {
     else
         answer.stop = fault_of_models(s, entry.segment);
     if (entry.segment.kind != SegmentKind::model && answer.stop == Stop::none)
-        answer = search(s.memory.lines, query_of(s, entry.segment), device.config.stack_depth);
+        answer = search(s.memory.lines, query_of(s, entry.segment), device.config.stack_depth,
+                        device.config.volumes);
     retire_with(s, answer);
 }
 
@@ -355,6 +356,7 @@ core::Result<Driver> open_device(DevicePort port) {
                           "the device at the port is not a coprocessor of this version");
     write(driver, Register::control, control_reset);
     driver.space.end = read(driver, Register::lines);
+    driver.volumes = static_cast<Volumes>(read(driver, Register::volumes));
     driver.port.shared->lines.assign(ring_size, {});
     constexpr uint64_t base = HostMemory::address_of(0);
     write(driver, Register::ring_base_low, static_cast<uint32_t>(base));
@@ -373,7 +375,7 @@ core::Result<SlotNumber> load_tool(Driver& driver, const core::RevolvedProfile& 
 core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Record> records) {
     return with_memory(driver, [&]() -> core::Result<SlotNumber> {
         LineSpace space = driver.space;
-        ModelWriter writer{.space = &space, .side = side, .epoch = 1};
+        ModelWriter writer{.space = &space, .side = side, .volumes = driver.volumes, .epoch = 1};
         Branch root;
         if (!records.empty()) {
             FEELER_TRY(root, add_tree(writer, records, side == Side::tool ? 1 : driver.leaf_size));
@@ -385,7 +387,7 @@ core::Result<SlotNumber> load_records(Driver& driver, Side side, std::vector<Rec
 
 core::Result<SlotNumber> load_stock(Driver& driver, const core::CutModel& stock) {
     return with_memory(driver, [&]() -> core::Result<SlotNumber> {
-        Driver::Slot slot{.stock = stock_model(cells_of(stock), driver.leaf_size)};
+        Driver::Slot slot{.stock = stock_model(cells_of(stock), driver.leaf_size, driver.volumes)};
         LineSpace space = driver.space;
         FEELER_TRY(const StockUpdate done, update(*slot.stock, space, stock.columns));
         slot.header = done.header;

@@ -57,6 +57,7 @@ struct Driver {
     uint32_t entries = 0;    // pushed since reset
     uint64_t lines_made = 0; // descriptors, and lines of models
     uint32_t leaf_size = 4;  // of work models; tool models have 1
+    Volumes volumes = Volumes::boxes;
 };
 
 /// A pair of bodies with its minimum distance over a segment.

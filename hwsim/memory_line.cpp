@@ -115,13 +115,16 @@ Line packed(const Records& records, uint32_t epoch, uint32_t address) {
     return sealed(line, epoch, address);
 }
 
-Node node_in(const Line& line) {
+Node node_in(const Line& line, Volumes volumes) {
+    constexpr uint32_t greatest_radius = (1U << coordinate_bits) - 1; // of a sphere
+    const uint32_t radius_mask =
+        volumes == Volumes::spheres ? greatest_radius : uint32_t{Record::greatest_extent};
     Node node;
     for (unsigned i = 0; i < 2; ++i) {
         Volume& volume = node.volume[i];
         volume.box.min = vector_at(line, i * 6 * coordinate_bits);
         volume.box.max = vector_at(line, (i * 6 + 3) * coordinate_bits);
-        volume.radius = static_cast<int32_t>(line.word[first_radius + i] & Record::greatest_extent);
+        volume.radius = static_cast<int32_t>(line.word[first_radius + i] & radius_mask);
         node.child[i] = {line.word[first_reference + i]};
     }
     return node;

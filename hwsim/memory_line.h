@@ -48,8 +48,19 @@ struct Box {
 constexpr Box everywhere{{least_coordinate, least_coordinate, least_coordinate},
                          {greatest_coordinate, greatest_coordinate, greatest_coordinate}};
 
-/// Bounding volume of a part of a model: all points within `radius`, horizontally, of a box. On the
-/// tool side the box is around the axes of cylinders; on the work side the radius is 0.
+/// What the nodes of models hold: upright boxes, or the spheres of Uddin & Yamazaki (2010). A device
+/// has one kind; the circuit in rtl/ has boxes.
+enum class Volumes : uint8_t { boxes, spheres };
+
+constexpr const char* name_of(Volumes volumes) {
+    return volumes == Volumes::spheres ? "spheres" : "boxes";
+}
+
+/// Bounding volume of a part of a model.
+///
+/// Boxes:   all points within `radius`, horizontally, of a box. On the tool side the box is around
+///          the axes of cylinders; on the work side the radius is 0.
+/// Spheres: both corners of the box are the centre.
 struct Volume {
     Box box;
     int32_t radius = 0;
@@ -133,12 +144,13 @@ constexpr uint32_t record_name(uint32_t line, uint32_t index) {
 }
 
 /// Node:   words 0-8 the boxes, 24 bits a number (first box, then second; min x y z, max x y z),
-///         words 9-10 the references, 11-12 the radii, 13 zero.
+///         words 9-10 the references, 11-12 the radii, of which 20 bits count for boxes and 24 for
+///         spheres, 13 zero.
 /// Leaf:   words 0-13 four records of 112 bits: x, y, z (24 each), run, half (20 each).
 /// Bits count from the lowest of word 0; signed numbers are two's complement.
 Line packed(const Node& node, uint32_t epoch, uint32_t address);
 Line packed(const Records& records, uint32_t epoch, uint32_t address);
-Node node_in(const Line& line);
+Node node_in(const Line& line, Volumes volumes = Volumes::boxes);
 Records records_in(const Line& line);
 
 inline uint32_t epoch_of(const Line& line) { return line.word[Line::epoch_word]; }

@@ -39,6 +39,8 @@ enum class Register : uint32_t {
     found_seq = 0x064,   // the segment to which it belongs
     found_valid = 0x068, // whether a pair was below the limit
 
+    volumes = 0x06C, // `Volumes`: what the nodes of models must hold
+
     ring_base_low = 0x080,  // read and write: byte address of the ring in the host's memory;
     ring_base_high = 0x084, // the low 6 bits are 0
     ring_log2_size = 0x088, // read and write: it has 2^this lines, at most 2^16
@@ -118,6 +120,7 @@ struct DeviceConfig {
     uint32_t clock_mhz = 100;
     uint32_t elements = 8;           // processing elements, at most 64
     uint32_t threads = 4;            // of each, at most 16
+    Volumes volumes = Volumes::boxes;
     uint32_t stack_depth = 64;       // waiting pairs per thread, at most `most_stack`
     uint32_t node_cache_lines = 256; // of each element; powers of two up to `most_cache_lines`
     uint32_t record_cache_lines = 256;

@@ -100,8 +100,8 @@ private:
 };
 
 bool has_sizes(const DeviceConfig& config, const DeviceConfig& sizes) {
-    return config.elements == sizes.elements && config.threads == sizes.threads
-           && config.stack_depth == sizes.stack_depth
+    return config.volumes == Volumes::boxes && config.elements == sizes.elements
+           && config.threads == sizes.threads && config.stack_depth == sizes.stack_depth
            && config.node_cache_lines == sizes.node_cache_lines
            && config.record_cache_lines == sizes.record_cache_lines
            && config.fifo_depth == sizes.fifo_depth && config.memory_queue == sizes.memory_queue

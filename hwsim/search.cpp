@@ -15,7 +15,9 @@ int64_t longest_side(const Box& box) {
     return longest;
 }
 
-int64_t longest_side(const Volume& volume) {
+int64_t size_of(const Volume& volume, Volumes volumes) {
+    if (volumes == Volumes::spheres)
+        return longest_side(volume.box) + 2 * int64_t{volume.radius}; // the box of a header is wide
     const Box& box = volume.box;
     const int64_t x = int64_t{box.max[0]} - box.min[0], y = int64_t{box.max[1]} - box.min[1];
     return std::max({x + 2 * int64_t{volume.radius}, y + 2 * int64_t{volume.radius},
@@ -40,9 +42,10 @@ SearchPair first_pair(const Query& query) {
             .last = static_cast<uint16_t>(1U << query.segment.log2_steps)};
 }
 
-Division division_of(const SearchPair& pair, const Segment& segment) {
-    const int64_t work = pair.work.is_leaf() ? -1 : longest_side(pair.work_box);
-    const int64_t tool = pair.tool.is_leaf() ? -1 : longest_side(pair.tool_volume);
+Division division_of(const SearchPair& pair, const Segment& segment, Volumes volumes) {
+    const Volume work_volume{pair.work_box, pair.work_radius};
+    const int64_t work = pair.work.is_leaf() ? -1 : size_of(work_volume, volumes);
+    const int64_t tool = pair.tool.is_leaf() ? -1 : size_of(pair.tool_volume, volumes);
     const int64_t way = longest_way(offset_at(segment, pair.first), offset_at(segment, pair.last));
     if (tool >= 0 && tool >= work && tool >= way) return Division::tool;
     if (work >= 0 && work >= way) return Division::work;
@@ -62,9 +65,27 @@ std::optional<uint64_t> squared_gap(const Volume& tool, const FixedVec& from, co
     return squared_distance(gap, tool.radius);
 }
 
-std::optional<uint64_t> squared_gap(const SearchPair& pair, const Segment& segment) {
-    return squared_gap(pair.tool_volume, offset_at(segment, pair.first),
-                       offset_at(segment, pair.last), pair.work_box);
+std::optional<uint64_t> squared_gap_of_spheres(const Volume& tool, const FixedVec& from,
+                                               const FixedVec& to, const Volume& work) {
+    int64_t square = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const int64_t min = int64_t{tool.box.min[axis]} + std::min(from[axis], to[axis]);
+        const int64_t max = int64_t{tool.box.max[axis]} + std::max(from[axis], to[axis]);
+        if (!is_coordinate(min - tool.radius) || !is_coordinate(max + tool.radius)) return {};
+        const int64_t gap =
+            std::max({work.box.min[axis] - max, min - work.box.max[axis], int64_t{0}});
+        square += gap * gap;
+    }
+    const int64_t root = root_up(square);
+    const int64_t rounded_down = root * root == square ? root : root - 1;
+    const int64_t apart = std::max(rounded_down - tool.radius - int64_t{work.radius}, int64_t{0});
+    return static_cast<uint64_t>(apart * apart);
+}
+
+std::optional<uint64_t> squared_gap(const SearchPair& pair, const FixedVec& from,
+                                    const FixedVec& to, Volumes volumes) {
+    if (volumes == Volumes::boxes) return squared_gap(pair.tool_volume, from, to, pair.work_box);
+    return squared_gap_of_spheres(pair.tool_volume, from, to, {pair.work_box, pair.work_radius});
 }
 
 SplitPairs halves_of_node(const SearchPair& pair, Division division, const Node& node) {
@@ -73,10 +94,12 @@ SplitPairs halves_of_node(const SearchPair& pair, Division division, const Node&
         SearchPair& half = halves.pair[i];
         half = pair;
         (division == Division::work ? half.work : half.tool) = node.child[i];
-        if (division == Division::work)
+        if (division == Division::work) {
             half.work_box = node.volume[i].box;
-        else
+            half.work_radius = node.volume[i].radius;
+        } else {
             half.tool_volume = node.volume[i];
+        }
         halves.there[i] = !node.child[i].is_none();
     }
     return halves;
@@ -94,8 +117,8 @@ namespace {
 
 class Search {
 public:
-    Search(std::span<const Line> memory, const Query& query, uint32_t stack_depth)
-        : memory_(memory), query_(query), stack_depth_(stack_depth) {
+    Search(std::span<const Line> memory, const Query& query, uint32_t stack_depth, Volumes volumes)
+        : memory_(memory), query_(query), stack_depth_(stack_depth), volumes_(volumes) {
         answer_.squared = query.limit;
     }
 
@@ -111,7 +134,7 @@ public:
 private:
     /// Divides a pair, or compares its records. Returns the next pair.
     std::optional<SearchPair> visit(const SearchPair& pair) {
-        const Division division = division_of(pair, query_.segment);
+        const Division division = division_of(pair, query_.segment, volumes_);
         if (division == Division::none) {
             compare_records(pair);
             return {};
@@ -124,14 +147,16 @@ private:
         const Line* line = read((of_work ? pair.work : pair.tool).line(), of_work);
         if (!line) return {};
         ++answer_.counts.nodes;
-        return nearer_of(halves_of_node(pair, division, node_in(*line)));
+        return nearer_of(halves_of_node(pair, division, node_in(*line, volumes_)));
     }
 
     std::optional<SearchPair> nearer_of(SplitPairs halves) {
         for (size_t i = 0; i < 2; ++i) {
             if (!halves.there[i]) continue;
             ++answer_.counts.box_tests;
-            const auto gap = squared_gap(halves.pair[i], query_.segment);
+            const SearchPair& half = halves.pair[i];
+            const auto gap = squared_gap(half, offset_at(query_.segment, half.first),
+                                         offset_at(query_.segment, half.last), volumes_);
             if (!gap) return stopped(Stop::out_of_range, 0);
             halves.pair[i].squared = *gap;
             halves.there[i] = *gap < answer_.squared;
@@ -216,14 +241,16 @@ private:
     std::span<const Line> memory_;
     const Query& query_;
     uint32_t stack_depth_;
+    Volumes volumes_;
     std::vector<SearchPair> stack_;
     Answer answer_;
 };
 
 } // namespace
 
-Answer search(std::span<const Line> memory, const Query& query, uint32_t stack_depth) {
-    return Search(memory, query, stack_depth).run();
+Answer search(std::span<const Line> memory, const Query& query, uint32_t stack_depth,
+              Volumes volumes) {
+    return Search(memory, query, stack_depth, volumes).run();
 }
 
 Stop fault_of(const Line& line, uint32_t address, uint32_t epoch) {

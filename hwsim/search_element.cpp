@@ -49,12 +49,12 @@ bool is_last_half(const SearchThread& thread, uint8_t half) {
     return half == 1 || !thread.halves.there[1];
 }
 
-GapAnswer test_of_half(SearchThread& thread, uint8_t number) {
+GapAnswer test_of_half(SearchThread& thread, uint8_t number, Volumes volumes) {
     const uint8_t half = thread.next_half;
     const SearchPair& pair = thread.halves.pair[half];
     std::array<FixedVec, 2> at = thread.offset;
     if (thread.division == Division::way) at[1 - half] = thread.middle[half];
-    const auto gap = squared_gap(pair.tool_volume, at[0], at[1], pair.work_box);
+    const auto gap = squared_gap(pair, at[0], at[1], volumes);
     thread.next_half = 1;
     if (is_last_half(thread, half)) thread.phase = Phase::tested;
     return {.valid = true,
@@ -148,7 +148,7 @@ uint32_t requested_line(const SearchThread& thread) {
 }
 
 PathAnswer ask_path_unit(SearchThread& thread, uint8_t number, uint64_t cycle,
-                         uint32_t search_limit) {
+                         const DeviceConfig& config) {
     const Segment& segment = thread.query.segment;
     if (thread.phase == Phase::middle) {
         thread.phase = Phase::halving;
@@ -159,14 +159,14 @@ PathAnswer ask_path_unit(SearchThread& thread, uint8_t number, uint64_t cycle,
             Division::none,
             {offset_at(segment, halves.pair[0].last), offset_at(segment, halves.pair[1].first)}};
     }
-    if (cycle - thread.started > search_limit) {
+    if (cycle - thread.started > config.search_limit) {
         stop(thread, Stop::too_long, 0);
         return {};
     }
     thread.phase = Phase::dividing;
     return {true,
             number,
-            division_of(thread.pair, segment),
+            division_of(thread.pair, segment, config.volumes),
             {offset_at(segment, thread.pair.first), offset_at(segment, thread.pair.last)}};
 }
 
@@ -195,14 +195,14 @@ void accept_path(SearchThread& thread, const PathAnswer& answer) {
     }
 }
 
-void accept_line(SearchThread& thread, const Line& line) {
+void accept_line(SearchThread& thread, const Line& line, Volumes volumes) {
     const bool of_work = needs_work(thread);
     const uint32_t epoch = of_work ? thread.query.work_epoch : thread.query.tool_epoch;
     if (epoch_of(line) > epoch) return stop(thread, Stop::model_changed, requested_line(thread));
     switch (thread.after_line) {
     case Phase::open:
         ++thread.answer.counts.nodes;
-        thread.halves = halves_of_node(thread.pair, thread.division, node_in(line));
+        thread.halves = halves_of_node(thread.pair, thread.division, node_in(line, volumes));
         return test_halves(thread);
     case Phase::take_tool:
         thread.tools = records_in(line);
@@ -214,8 +214,8 @@ void accept_line(SearchThread& thread, const Line& line) {
     }
 }
 
-GapAnswer ask_gap_unit(SearchThread& thread, uint8_t number) {
-    return thread.phase == Phase::test ? test_of_half(thread, number)
+GapAnswer ask_gap_unit(SearchThread& thread, uint8_t number, Volumes volumes) {
+    return thread.phase == Phase::test ? test_of_half(thread, number, volumes)
                                        : next_records(thread, number);
 }
 
@@ -306,7 +306,7 @@ void act(SearchElement& e, const DeviceConfig& config, const ElementInput& in, u
     case Phase::divide:
     case Phase::middle:
         if (takes(e, ports.path_taken))
-            ports.path = ask_path_unit(thread, number, in.cycle, config.search_limit);
+            ports.path = ask_path_unit(thread, number, in.cycle, config);
         break;
     case Phase::open:
     case Phase::take_tool:
@@ -321,7 +321,7 @@ void act(SearchElement& e, const DeviceConfig& config, const ElementInput& in, u
         break;
     case Phase::test:
     case Phase::compare:
-        if (takes(e, ports.gap_taken)) ports.gap = ask_gap_unit(thread, number);
+        if (takes(e, ports.gap_taken)) ports.gap = ask_gap_unit(thread, number, config.volumes);
         break;
     case Phase::pop:
         if (thread.stack_size == 0)
@@ -336,14 +336,14 @@ void act(SearchElement& e, const DeviceConfig& config, const ElementInput& in, u
 }
 
 /// Continues with the line that the cache gave, or has it read from memory.
-void take_looked(SearchElement& e) {
+void take_looked(SearchElement& e, Volumes volumes) {
     if (!e.looked.valid) return;
     e.looked.valid = false;
     SearchThread& thread = e.threads[e.looked.thread];
     const bool is_node = thread.after_line == Phase::open;
     if (e.looked.hit) {
         ++(is_node ? e.counts.node_hits : e.counts.record_hits);
-        accept_line(thread, e.looked.line);
+        accept_line(thread, e.looked.line, volumes);
     } else {
         ++(is_node ? e.counts.node_misses : e.counts.record_misses);
         thread.phase = Phase::ask;
@@ -357,12 +357,12 @@ bool is_filling(const SearchElement& e, const ElementInput& in) {
     return !e.threads[in.response->request.thread].is_stale;
 }
 
-void take_response(SearchElement& e, const ElementInput& in) {
+void take_response(SearchElement& e, const ElementInput& in, Volumes volumes) {
     const ReadRequest& request = in.response->request;
     if (request.run != in.run) return;
     SearchThread& thread = e.threads[request.thread];
     if (in.response->is_intact)
-        accept_line(thread, in.response->line);
+        accept_line(thread, in.response->line, volumes);
     else
         stop(thread, Stop::bad_check, request.address);
     sort_in(e, request.thread);
@@ -420,8 +420,8 @@ void step_threads(SearchElement& e, const DeviceConfig& config, const ElementInp
     // Threads that get an input in this cycle act in the next.
     const uint32_t acting = e.acting;
     if (in.granted) e.request.valid = false;
-    take_looked(e);
-    if (in.response) take_response(e, in);
+    take_looked(e, config.volumes);
+    if (in.response) take_response(e, in, config.volumes);
     take_answers(e, config);
     Ports ports;
     // The threads from `first` on, then those before it.

@@ -68,7 +68,8 @@ struct GapAnswer {
 /// 24 x 24 bits and one of 25 x 25.
 ///
 /// Stages: 4 for the gaps, 3 for their squares and the sum, 13 of the root with two bits each, less
-/// the radius, at least 0, 2 for the square, sum.
+/// the radius, at least 0, 2 for the square, sum. For spheres the sum is of three squares, and that
+/// of the height is not added.
 using GapUnit = Pipeline<GapAnswer, 25>;
 
 /// What a thread does next, or waits for.
@@ -127,16 +128,16 @@ bool needs_work(const SearchThread& thread);
 
 /// The question to the path unit in phases divide and middle; none if the search takes too long.
 PathAnswer ask_path_unit(SearchThread& thread, uint8_t number, uint64_t cycle,
-                         uint32_t search_limit);
+                         const DeviceConfig& config);
 
 /// Continues with the answer of the path unit.
 void accept_path(SearchThread& thread, const PathAnswer& answer);
 
 /// Continues with the line that was read.
-void accept_line(SearchThread& thread, const Line& line);
+void accept_line(SearchThread& thread, const Line& line, Volumes volumes);
 
 /// The question to the gap unit in phases test and compare.
-GapAnswer ask_gap_unit(SearchThread& thread, uint8_t number);
+GapAnswer ask_gap_unit(SearchThread& thread, uint8_t number, Volumes volumes);
 
 /// Takes an answer of the gap unit.
 void accept_gap(SearchThread& thread, const GapAnswer& answer, uint32_t stack_depth);

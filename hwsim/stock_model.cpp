@@ -65,7 +65,49 @@ core::Result<Branch> subtree(ModelWriter& writer, std::span<Record> records, uin
         [&](const Record& a, const Record& b) { return by_position(a) < by_position(b); });
     FEELER_TRY(const Branch a, subtree(writer, records.first(left), leaf_size));
     FEELER_TRY(const Branch b, subtree(writer, records.subspan(left), leaf_size));
-    return add_above(writer, a, b);
+    FEELER_TRY(Branch above, add_above(writer, a, b));
+    if (writer.volumes == Volumes::spheres) above.volume = sphere_round(records, writer.side);
+    return above;
+}
+
+/// The distance of the farther of two ends from a point on a line.
+int64_t farthest(int64_t low, int64_t high, int64_t from) {
+    return std::max(std::abs(low - from), std::abs(high - from));
+}
+
+int64_t squared_reach(const Box& box, const FixedVec& from) {
+    int64_t squared = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        const int64_t along = farthest(box.min[axis], box.max[axis], from[axis]);
+        squared += along * along;
+    }
+    return squared;
+}
+
+/// The squared distance from a point to the farthest point of a record, not rounded down.
+int64_t squared_reach(const Record& r, Side side, const FixedVec& from) {
+    if (side == Side::work) return squared_reach(box_of(r), from);
+    const int64_t up = farthest(r.base[2], int64_t{r.base[2]} + r.run, from[2]);
+    const int64_t x = int64_t{r.base[0]} - from[0], y = int64_t{r.base[1]} - from[1];
+    const int64_t level = root_up(x * x + y * y) + r.half;
+    return level * level + up * up;
+}
+
+FixedVec centre_of(const Box& box) {
+    FixedVec centre{};
+    for (size_t axis = 0; axis < 3; ++axis)
+        centre[axis] = static_cast<int32_t>((int64_t{box.min[axis]} + box.max[axis]) >> 1);
+    return centre;
+}
+
+Volume sphere_above(const Box& box, const Volume& a, const Volume& b) {
+    const FixedVec centre = centre_of(box);
+    const auto far_side = [&](const Volume& sphere) {
+        return root_up(squared_reach(sphere.box, centre)) + sphere.radius;
+    };
+    const int64_t to_corners = root_up(squared_reach(box, centre));
+    return {{centre, centre},
+            static_cast<int32_t>(std::min(to_corners, std::max(far_side(a), far_side(b))))};
 }
 
 } // namespace
@@ -79,8 +121,12 @@ core::Result<uint32_t> ModelWriter::add(const Node& node) {
 core::Result<Branch> ModelWriter::add_leaf(std::span<const Record> records) {
     const auto count = static_cast<uint32_t>(records.size());
     FEELER_TRY(const LineRun run, taken(*this, leaf_lines(count)));
-    Branch leaf{Reference::leaf(run.first, count), volume_of(records[0], side)};
-    for (const Record& record : records) leaf.volume.extend(volume_of(record, side));
+    Branch leaf{Reference::leaf(run.first, count), volume_of(records[0], side), box_of(records[0])};
+    for (const Record& record : records) {
+        leaf.volume.extend(volume_of(record, side));
+        leaf.box.extend(box_of(record));
+    }
+    if (volumes == Volumes::spheres) leaf.volume = sphere_round(records, side);
     for (uint32_t i = 0; i < run.count; ++i) {
         Records four{};
         const auto part = records.subspan(size_t{i} * records_per_line);
@@ -88,6 +134,16 @@ core::Result<Branch> ModelWriter::add_leaf(std::span<const Record> records) {
         lines.push_back({run.first + i, packed(four, epoch, run.first + i)});
     }
     return leaf;
+}
+
+Volume sphere_round(std::span<const Record> records, Side side) {
+    Box box = box_of(records[0]);
+    for (const Record& record : records) box.extend(box_of(record));
+    const FixedVec centre = centre_of(box);
+    int64_t squared = 0;
+    for (const Record& record : records)
+        squared = std::max(squared, squared_reach(record, side, centre));
+    return {{centre, centre}, static_cast<int32_t>(root_up(squared))};
 }
 
 core::Result<Branch> add_tree(ModelWriter& writer, std::vector<Record> records,
@@ -108,8 +164,12 @@ core::Result<Branch> add_above(ModelWriter& writer, const Branch& a, const Branc
     if (b.reference.is_none()) return a;
     FEELER_TRY(const uint32_t line,
                writer.add(Node{{a.volume, b.volume}, {a.reference, b.reference}}));
-    Branch above{Reference::node(line), a.volume};
-    above.volume.extend(b.volume);
+    Branch above{Reference::node(line), a.volume, a.box};
+    above.box.extend(b.box);
+    if (writer.volumes == Volumes::spheres)
+        above.volume = sphere_above(above.box, a.volume, b.volume);
+    else
+        above.volume.extend(b.volume);
     return above;
 }
 
@@ -132,7 +192,7 @@ public:
     Update(StockModel& model, LineSpace& space, const ScanLines& columns)
         : model_(model), columns_(columns), space_(space) {
         if (model.epoch == UINT32_MAX) begin_again();
-        writer_ = {.space = &space_, .epoch = model_.epoch + 1};
+        writer_ = {.space = &space_, .volumes = model_.volumes, .epoch = model_.epoch + 1};
         across_ = tiles_along(columns.u_count());
     }
 
@@ -231,11 +291,12 @@ private:
 
 } // namespace
 
-StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size) {
+StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size, Volumes volumes) {
     StockModel model{.columns = *cells.columns, .x = cells.x, .y = cells.y};
     model.tiles.resize(cells.columns->tile_count());
     model.above.resize(model.tiles.empty() ? 0 : 2 * model.tiles.size() - 1);
     model.leaf_size = leaf_size;
+    model.volumes = volumes;
     return model;
 }
 

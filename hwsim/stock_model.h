@@ -15,6 +15,7 @@ namespace hwsim {
 struct Branch {
     Reference reference;
     Volume volume;
+    Box box; // around its records
 
     bool operator==(const Branch&) const = default;
 };
@@ -29,6 +30,7 @@ struct AddressedLine {
 struct ModelWriter {
     LineSpace* space = nullptr;
     Side side = Side::work;
+    Volumes volumes = Volumes::boxes;
     uint32_t epoch = 0; // of all new lines
     std::vector<AddressedLine> lines;
     std::vector<LineRun> runs; // allocated, in order
@@ -38,6 +40,10 @@ struct ModelWriter {
     core::Result<Branch> add_leaf(std::span<const Record> records); // 1 to 32
 };
 
+/// The bounding sphere of some records, as in the paper: its centre is that of their box, rounded
+/// to a step; its radius is the greatest distance from there to a point of a record, rounded up.
+Volume sphere_round(std::span<const Record> records, Side side);
+
 /// A tree over records, split at the median along the longest side of the box of their positions
 /// down to `leaf_size` records. The same records give the same tree.
 ///
@@ -45,7 +51,9 @@ struct ModelWriter {
 ///          the memory is full.
 core::Result<Branch> add_tree(ModelWriter& writer, std::vector<Record> records, uint32_t leaf_size);
 
-/// The node above two branches; if one is empty, the other one itself.
+/// The node above two branches; if one is empty, the other one itself. A sphere above two others
+/// has the centre of the box of all records, and reaches to the corners of that box or to the far
+/// sides of the two spheres, whichever is nearer.
 core::Result<Branch> add_above(ModelWriter& writer, const Branch& a, const Branch& b);
 
 /// The header line of a model, to be put into a slot of the device.
@@ -66,6 +74,7 @@ struct StockModel {
     std::optional<uint32_t> header; // empty before the first update
     uint32_t epoch = 0;
     uint32_t leaf_size = 4;
+    Volumes volumes = Volumes::boxes;
 };
 
 /// The lines that an update writes, and those that become free once all entries before it are
@@ -81,7 +90,8 @@ struct StockUpdate {
 /// All lines of a stock in the memory.
 std::vector<LineRun> lines_of(const StockModel& model);
 
-StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4);
+StockModel stock_model(const ColumnCells& cells, uint32_t leaf_size = 4,
+                       Volumes volumes = Volumes::boxes);
 
 /// Whether these are the columns of the last update.
 bool is_current(const StockModel& model, const core::ScanLines& columns);

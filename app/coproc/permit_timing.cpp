@@ -128,6 +128,8 @@ void read_device(TableReader& table, hwsim::DeviceConfig& device) {
     read_count(table, "clock_mhz", device.clock_mhz);
     read_count(table, "elements", device.elements);
     read_count(table, "threads", device.threads);
+    if (const auto volumes = table.word("volumes", {"boxes", "spheres"}))
+        device.volumes = *volumes == "spheres" ? hwsim::Volumes::spheres : hwsim::Volumes::boxes;
     read_count(table, "stack_depth", device.stack_depth);
     read_count(table, "node_cache_lines", device.node_cache_lines);
     read_count(table, "record_cache_lines", device.record_cache_lines);

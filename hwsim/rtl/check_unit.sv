@@ -18,12 +18,20 @@ module check_unit #(
 );
   localparam int STAGES = 4;
 
-  // CRC-32, reversed: the lowest bit comes first.
+  // CRC-32, reversed: the lowest bit comes first. The first 32 bits meet the bits of the check word of what
+  // came before, so a bit of the result is the parity of some bits of both: a tree, not a chain of 128 steps.
+  function automatic logic [4095:0] parity_masks();
+    logic [31:0] effect;  // of bit i on the result
+    effect = 32'hEDB8_8320;
+    for (int i = 127; i >= 0; i--) begin
+      for (int k = 0; k < 32; k++) parity_masks[128*k+i] = effect[k];
+      effect = {1'b0, effect[31:1]} ^ (effect[0] ? 32'hEDB8_8320 : 32'd0);
+    end
+  endfunction
+  localparam logic [4095:0] PARITY_MASKS = parity_masks();
+
   function automatic logic [31:0] checked_on(input logic [31:0] check, input logic [127:0] bits);
-    logic [31:0] c;
-    c = check;
-    for (int i = 0; i < 128; i++) c = {1'b0, c[31:1]} ^ (c[0] ^ bits[i] ? 32'hEDB8_8320 : 32'd0);
-    checked_on = c;
+    for (int k = 0; k < 32; k++) checked_on[k] = ^(PARITY_MASKS[128*k+:128] & (bits ^ {96'd0, check}));
   endfunction
 
   logic [STAGES:1] valid;

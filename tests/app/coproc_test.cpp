@@ -367,6 +367,11 @@ TEST(DeviceFile, ReportsMistakesWithTheirLine) {
     EXPECT_NE(error_of("[device]\nelement = 4\n").find("element"), std::string::npos);
     EXPECT_NE(error_of("[device]\nelements = 0\n").find("above 0"), std::string::npos);
     EXPECT_NE(error_of("[device]\nelements = 1000\n"), "none");
+    const auto spheres =
+        read_device_file(folder.write("device.toml", "[device]\nvolumes = \"spheres\"\n"));
+    ASSERT_TRUE(spheres.has_value());
+    EXPECT_EQ(spheres->device.volumes, hwsim::Volumes::spheres);
+    EXPECT_NE(error_of("[device]\nvolumes = \"cones\"\n").find("spheres"), std::string::npos);
     for (const char* line : {"servo_period = -1", "servo_period = 1e-9", "feed_override = 0",
                              "feed_override = 1e-9", "io_latency = -0.1"})
         EXPECT_NE(error_of(fmt::format("[control]\n{}\n", line)).find("must be from"),

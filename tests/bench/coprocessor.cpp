@@ -1,14 +1,14 @@
 // Prints the tables of hwsim/README.md: the performance of devices of various sizes in their own
 // cycles, so that the tables are the same on every machine. With --speed the speed of the emulator
-// on this machine; with --volumes the comparison with the paper's spheres (one minute).
-
-#include "hwsim/coprocessor.h"
+// and of the functional model on this machine; with --volumes the comparison with the paper's
+// spheres (some minutes).
 
 #include <ctime>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "tests/bench/scene_device.h"
 #include "tests/bench/volume_table.h"
 
 namespace {
@@ -25,55 +25,9 @@ struct Measured {
 
 using hwsim::Counter;
 
-/// A device with a scene in it.
-struct Bench {
-    hwsim::EmulatedDevice device;
-    hwsim::Driver driver;
-    std::vector<hwsim::PathSegment> segments;
-
-    Bench(const Scene& scene, const DeviceConfig& config, uint32_t leaf_size)
-        : device(hwsim::emulated_device(config).value()), segments(scene.segments) {
-        device.bus_cycles = 1;
-        device.state.host.watchdog = 0;
-        driver = hwsim::open_device(port_of(device)).value();
-        const auto tool = hwsim::load_tool(driver, scene.body).value();
-        driver.leaf_size = leaf_size;
-        const auto work = hwsim::load_stock(driver, scene.stock).value();
-        wait_for_all(driver);
-        for (hwsim::PathSegment& s : segments) s.pairs = {{tool, work, scene.keep}};
-    }
-
-    double counted(Counter counter) {
-        const uint64_t low = read(device.state, device.config, address_of(counter));
-        const uint64_t high = read(device.state, device.config, address_of(counter) + 4);
-        return static_cast<double>(low | high << 32);
-    }
-    uint64_t cycle() const { return device.state.cycle; }
-
-    /// Cycles per segment from the first push to the last permit.
-    double run() {
-        const uint64_t before = cycle();
-        for (const hwsim::PathSegment& s : segments) push(driver, s).value();
-        wait_for_all(driver);
-        return static_cast<double>(cycle() - before) / static_cast<double>(segments.size());
-    }
-
-    double run_alone() {
-        uint64_t cycles = 0;
-        for (const hwsim::PathSegment& s : segments) {
-            const uint32_t number = push(driver, s).value();
-            const uint64_t pushed = cycle();
-            while (device.state.permits.permit_sequence != number
-                   && device.state.permits.stopped == hwsim::Stop::none)
-                tick(device.state, device.config);
-            cycles += cycle() - pushed;
-        }
-        return static_cast<double>(cycles) / static_cast<double>(segments.size());
-    }
-};
-
 Measured measured(const Scene& scene, const DeviceConfig& config, uint32_t leaf_size = 4) {
-    Bench bench(scene, config, leaf_size);
+    bench::SceneDevice bench(config);
+    bench.segments = load(bench.driver, scene, leaf_size);
     Measured result{.latency = bench.run_alone()};
     const uint64_t cycle = bench.cycle();
     const std::clock_t begin = std::clock();
@@ -82,10 +36,10 @@ Measured measured(const Scene& scene, const DeviceConfig& config, uint32_t leaf_
                    / static_cast<double>(std::max<std::clock_t>(std::clock() - begin, 1));
     if (report(bench.driver).stop != hwsim::Stop::none)
         fmt::print(stderr, "{}: a segment was refused, so what follows says nothing\n", scene.name);
-    const double queries = bench.counted(Counter::queries);
-    result.nodes = bench.counted(Counter::nodes) / queries;
-    result.pairs = bench.counted(Counter::pair_tests) / queries;
-    result.lines = bench.counted(Counter::lines_read) / queries;
+    const bench::SearchWork work = bench.work();
+    result.nodes = work.nodes;
+    result.pairs = work.pairs;
+    result.lines = work.lines;
     const double hits = bench.counted(Counter::node_hits);
     result.hits = hits / std::max(hits + bench.counted(Counter::node_misses), 1.0);
     return result;
@@ -114,7 +68,7 @@ std::string both(const Measured& m) { return fmt::format("{:.0f} / {:.0f}", m.la
 DeviceConfig bench_config() { return {.memory_lines = 1U << 19}; }
 
 void parts_table(const std::vector<Scene>& scenes) {
-    head("elements x threads: alone / one after the other", scenes);
+    head("elements x threads: cycles alone / pipelined", scenes);
     for (const uint32_t elements : {1U, 2U, 4U, 8U, 16U})
         for (const uint32_t threads : {1U, 4U, 8U}) {
             if (threads != 4 && elements != 1 && elements != 8) continue;
@@ -200,21 +154,41 @@ void speed_table(const std::vector<Scene>& scenes) {
     }
 }
 
+/// Microseconds per segment that the functional model takes on this processor.
+double time_on_a_core(const Scene& scene) {
+    auto device = hwsim::functional_device(bench_config()).value();
+    hwsim::Driver driver = hwsim::open_device(port_of(device)).value();
+    const auto segments = bench::load(driver, scene, 4);
+    size_t count = 0;
+    const std::clock_t begin = std::clock();
+    for (; std::clock() - begin < CLOCKS_PER_SEC; count += segments.size())
+        for (const hwsim::PathSegment& s : segments) push(driver, s).value();
+    return 1e6 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC
+           / static_cast<double>(count);
+}
+
+void core_table(const std::vector<Scene>& scenes) {
+    head("microseconds a segment", scenes);
+    fmt::print("| one core, functional model |");
+    for (const Scene& scene : scenes) fmt::print(" {:.2f} |", time_on_a_core(scene));
+    fmt::print("\n");
+}
+
 } // namespace
 
 int main(int count, char** words) {
     const std::vector<Scene> scenes = bench::machining_scenes();
     if (count > 1 && std::string_view(words[1]) == "--speed") {
         speed_table(scenes);
+        core_table(scenes);
         return 0;
     }
     if (count > 1 && std::string_view(words[1]) == "--volumes")
         return bench::print_volumes(scenes) ? 0 : 1;
-    head("what it is", scenes);
-    row("cycles, nodes, pairs, lines from memory", scenes, bench_config(), 4,
+    head("work", scenes);
+    row("nodes, pairs, lines from memory per segment", scenes, bench_config(), 4,
         [](const Measured& m) {
-            return fmt::format("{:.0f}, {:.0f}, {:.0f}, {:.1f}", m.cycles, m.nodes, m.pairs,
-                               m.lines);
+            return fmt::format("{:.0f}, {:.0f}, {:.1f}", m.nodes, m.pairs, m.lines);
         });
     parts_table(scenes);
     memory_table(scenes);

@@ -3,19 +3,20 @@
 #include <fmt/format.h>
 
 #include "core/dbm/solid.h"
-#include "hwsim/coprocessor.h"
 #include "hwsim/tool_model.h"
-#include "tests/bench/box_rules.h"
-#include "tests/bench/sphere_rules.h"
-#include "tests/bench/volume_search.h"
+#include "tests/bench/scene_device.h"
 
 namespace bench {
 namespace {
 
-using hwsim::Query;
 using hwsim::Record;
 using hwsim::Side;
+using hwsim::SlotNumber;
+using hwsim::Volumes;
 
+constexpr double mesh_size = 0.5;
+
+/// What models consist of: records, or points, as in the paper.
 enum class Bodies : uint8_t { records, points };
 
 constexpr const char* name_of(Bodies bodies) {
@@ -41,154 +42,140 @@ std::vector<Record> scanned(const core::RevolvedProfile& body) {
     for (const core::ProfileElement& piece : body.elements) {
         const core::SolidCylinder cylinder{{0, 0, piece.z0}, piece.r0, piece.z1 - piece.z0};
         const auto more =
-            core::boundary_points(core::scan(core::Solid{cylinder, 0.0}, 0.5).value());
+            core::boundary_points(core::scan(core::Solid{cylinder, 0.0}, mesh_size).value());
         points.insert(points.end(), more.begin(), more.end());
     }
     return records_of(points);
 }
 
-/// The models of a scene's tool and work.
-struct Models {
-    std::vector<Record> tool, work;
-};
-
-Models models_of(const MachiningScene& scene, Bodies bodies) {
-    if (bodies == Bodies::points)
-        return {scanned(scene.body), records_of(core::boundary_points(scene.stock.lines))};
-    return {hwsim::cylinders_round(scene.body, 0.02).value(),
-            hwsim::posts_of(hwsim::cells_of(scene.stock)).value()};
+/// A device that never gives up a search.
+hwsim::DeviceConfig config_with(Volumes volumes) {
+    return {.volumes = volumes, .memory_lines = 1U << 19, .search_limit = UINT32_MAX};
 }
 
-/// A device with a scene, its spheres, and the queries.
-struct Questions {
-    hwsim::FunctionalDevice device;
-    hwsim::Driver driver;
-    SphereTable spheres;
-    std::vector<Query> queries;
-
-    Questions(const MachiningScene& scene, Bodies bodies)
-        : device(hwsim::functional_device({.memory_lines = 1U << 19}).value()),
-          driver(hwsim::open_device(port_of(device)).value()) {
-        const Models models = models_of(scene, bodies);
-        const auto tool = load_records(driver, Side::tool, models.tool);
-        // Columns are loaded tile by tile, as in the control.
-        const auto work = bodies == Bodies::points ? load_records(driver, Side::work, models.work)
-                                                   : load_stock(driver, scene.stock);
-        for (hwsim::PathSegment segment : scene.segments) {
-            segment.pairs = {{tool.value(), work.value(), scene.keep}};
-            push(driver, segment).value();
-            queries.push_back(query_of(device.state, device.state.retired.segment));
-        }
-        add_spheres(spheres, memory(), queries[0].tool_header, Side::tool);
-        add_spheres(spheres, memory(), queries[0].work_header, Side::work);
-    }
-
-    std::span<const hwsim::Line> memory() const { return device.state.memory.lines; }
-};
-
-/// Means over the segments of a scene: the work of a thread, and its cycles.
-struct Work {
-    double nodes = 0.0, pairs = 0.0, lines = 0.0, cycles = 0.0;
-};
-
-/// A search, its thread, and its work so far.
-template <typename Rules>
-struct Contestant {
-    LoneThread time;
-    uint64_t nodes = 0, pairs = 0;
-
-    uint64_t ask(const Questions& scene, const Query& query, const Rules& rules) {
-        const hwsim::Answer answer = VolumeSearch(scene.memory(), query, rules, time).run();
-        nodes += answer.counts.nodes;
-        pairs += answer.counts.pair_tests;
-        return answer.squared;
-    }
-    Work mean(size_t count) const {
-        const auto each = [count](uint64_t sum) {
-            return static_cast<double>(sum) / static_cast<double>(count);
-        };
-        return {each(nodes), each(pairs), each(time.lines), each(time.cycles)};
-    }
-};
-
-/// Stages of the units (see hwsim/README.md, "Spheres"). With points, only the bound of a sphere
-/// needs a root.
-LoneThread thread_of(Bodies bodies, uint32_t volume_stages) {
-    UnitStages stages{.volume = volume_stages};
-    if (bodies == Bodies::points) stages.pair = 7;
-    return LoneThread({}, stages);
+/// `count` of them, evenly spaced.
+std::vector<hwsim::PathSegment> some_of(const std::vector<hwsim::PathSegment>& all, size_t count) {
+    std::vector<hwsim::PathSegment> chosen;
+    for (size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
+    return chosen;
 }
 
-constexpr std::array<const char*, 3> volumes{"boxes", "spheres", "spheres, no root"};
-using Comparison = std::array<Work, volumes.size()>;
-
-/// Runs all three searches over all queries; empty if they disagree.
-std::optional<Comparison> compared(const Questions& scene, Bodies bodies, bool measures) {
-    const uint32_t box_stages = bodies == Bodies::points ? 7 : hwsim::GapUnit::latency;
-    Contestant<BoxRules> boxes{thread_of(bodies, box_stages)};
-    Contestant<SphereRules> spheres{thread_of(bodies, 20)};
-    Contestant<RootlessSphereRules> rootless{thread_of(bodies, 6)};
-    for (Query query : scene.queries) {
-        if (measures) query.limit = hwsim::beyond_all_squares;
-        const uint64_t squared = boxes.ask(scene, query, BoxRules(query));
-        const SphereRules by_roots(scene.memory(), scene.spheres, query);
-        const RootlessSphereRules by_squares(scene.memory(), scene.spheres, query);
-        if (spheres.ask(scene, query, by_roots) != squared
-            || rootless.ask(scene, query, by_squares) != squared)
-            return {};
+/// Loads the scene with `count` of its segments, evenly spaced.
+void load(SceneDevice& device, const MachiningScene& scene, Bodies bodies, size_t count) {
+    if (bodies == Bodies::records) {
+        device.segments = load(device.driver, scene, 4);
+    } else {
+        device.driver.leaf_size = 1; // as in the paper
+        const auto points = records_of(core::boundary_points(scene.stock.lines));
+        const SlotNumber tool =
+            load_records(device.driver, Side::tool, scanned(scene.body)).value();
+        const SlotNumber work = load_records(device.driver, Side::work, points).value();
+        device.segments = with_pair(device.driver, scene.segments, {tool, work, scene.keep});
     }
-    const size_t count = scene.queries.size();
-    return Comparison{boxes.mean(count), spheres.mean(count), rootless.mean(count)};
+    device.segments = some_of(device.segments, count);
 }
 
-/// The number of records or points for tool and work.
-void print_sizes(std::span<const MachiningScene> scenes, Bodies bodies) {
-    fmt::print("| {} of tool, work |", name_of(bodies));
-    for (const MachiningScene& scene : scenes) {
-        const Models models = models_of(scene, bodies);
-        fmt::print(" {}, {} |", models.tool.size(), models.work.size());
-    }
-    fmt::print("\n");
+/// Cells of the table, and the distances that were measured.
+struct Row {
+    std::string permits, measurements;
+    std::vector<uint64_t> squares;
+};
+
+std::string cell_of(const SearchWork& work, double cycles) {
+    return fmt::format(" {:.0f}, {:.0f}, {:.0f}: {:.0f}", work.nodes, work.pairs, work.lines,
+                       cycles);
 }
 
-/// Rows for a kind of body: permit decisions, and distances.
+bool is_well(SceneDevice& device) {
+    const hwsim::DeviceReport now = report(device.driver);
+    if (now.stop != hwsim::Stop::none)
+        fmt::print(stderr, "the device has stopped: {}\n", name_of(now.stop));
+    return now.stop == hwsim::Stop::none;
+}
+
+/// Many segments one after the other, then some alone; false if one is refused, as none should be.
+bool add_permits(Row& row, const MachiningScene& scene, Bodies bodies, Volumes volumes) {
+    SceneDevice device(config_with(volumes));
+    load(device, scene, bodies, 128);
+    const double together = device.run();
+    const SearchWork work = device.work();
+    device.segments = some_of(device.segments, 16);
+    row.permits += fmt::format("{} / {:.0f} |", cell_of(work, device.run_alone()), together);
+    return is_well(device);
+}
+
+void add_measurements(Row& row, const MachiningScene& scene, Bodies bodies, Volumes volumes) {
+    SceneDevice device(config_with(volumes));
+    load(device, scene, bodies, 8);
+    uint64_t cycles = 0;
+    for (const uint64_t squared : device.measure_all(cycles)) row.squares.push_back(squared);
+    const double count = static_cast<double>(device.segments.size());
+    row.measurements += cell_of(device.work(), static_cast<double>(cycles) / count) + " |";
+}
+
 bool print_rows(std::span<const MachiningScene> scenes, Bodies bodies) {
-    std::array<std::string, 2 * volumes.size()> rows;
-    for (const MachiningScene& scene : scenes) {
-        const Questions questions(scene, bodies);
-        for (const size_t measures : {0U, 1U}) {
-            const auto comparison = compared(questions, bodies, measures == 1);
-            if (!comparison) return false;
-            for (size_t i = 0; i < volumes.size(); ++i) {
-                const Work& work = (*comparison)[i];
-                rows[measures * volumes.size() + i] +=
-                    fmt::format(" {:.0f}, {:.0f}, {:.0f}: {:.0f} |", work.nodes, work.pairs,
-                                work.lines, work.cycles);
-            }
+    std::array<Row, 2> rows;
+    for (const Volumes volumes : {Volumes::boxes, Volumes::spheres})
+        for (const MachiningScene& scene : scenes) {
+            Row& row = rows[static_cast<size_t>(volumes)];
+            if (!add_permits(row, scene, bodies, volumes)) return false;
+            add_measurements(row, scene, bodies, volumes);
         }
+    for (const Volumes volumes : {Volumes::boxes, Volumes::spheres})
+        fmt::print("| {}, {} |{}\n", name_of(bodies), name_of(volumes),
+                   rows[static_cast<size_t>(volumes)].permits);
+    for (const Volumes volumes : {Volumes::boxes, Volumes::spheres})
+        fmt::print("| {}, measured, {} |{}\n", name_of(bodies), name_of(volumes),
+                   rows[static_cast<size_t>(volumes)].measurements);
+    return rows[0].squares == rows[1].squares;
+}
+
+bool print_scenes(std::span<const MachiningScene> scenes) {
+    fmt::print("\n| nodes, pairs, lines from memory: cycles |");
+    for (const MachiningScene& scene : scenes) fmt::print(" {} |", scene.name);
+    fmt::print("\n|---|");
+    for (size_t i = 0; i < scenes.size(); ++i) fmt::print("---|");
+    fmt::print("\n");
+    return print_rows(scenes, Bodies::records) && print_rows(scenes, Bodies::points);
+}
+
+/// The case study of the paper: two balls of 50 mm, eight gaps between their surfaces, along X and
+/// along a direction parallel to nothing.
+bool print_case_study() {
+    const std::vector<Record> ball =
+        records_of(core::boundary_points(core::scan(core::Sphere{25.0}, mesh_size).value()));
+    fmt::print("\n| {} points each: nodes, pairs, lines from memory: cycles |", ball.size());
+    const std::array<core::Vec3, 2> directions{core::Vec3(1, 0, 0), core::Vec3(0.48, 0.6, 0.64)};
+    fmt::print(" boxes, along X | spheres, along X | boxes, generic | spheres, generic |\n");
+    fmt::print("|---|---|---|---|---|\n");
+    for (const double gap : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0}) {
+        fmt::print("| gap of {} mm |", gap);
+        for (const core::Vec3& direction : directions) {
+            std::array<uint64_t, 2> squares{};
+            for (const Volumes volumes : {Volumes::boxes, Volumes::spheres}) {
+                SceneDevice device(config_with(volumes));
+                device.driver.leaf_size = 1;
+                const SlotNumber tool = load_records(device.driver, Side::tool, ball).value();
+                const SlotNumber work = load_records(device.driver, Side::work, ball).value();
+                const core::Vec3 at = (50.0 + gap) * direction;
+                device.segments = with_pair(device.driver, {{at, at, {}}}, {tool, work, 0.0});
+                uint64_t cycles = 0;
+                squares[static_cast<size_t>(volumes)] = device.measure_all(cycles)[0];
+                fmt::print("{} |", cell_of(device.work(), static_cast<double>(cycles)));
+            }
+            if (squares[0] != squares[1]) return false;
+        }
+        fmt::print("\n");
     }
-    for (size_t i = 0; i < rows.size(); ++i)
-        fmt::print("| {}, {}{} |{}\n", name_of(bodies), i < volumes.size() ? "" : "measured, ",
-                   volumes[i % volumes.size()], rows[i]);
     return true;
 }
 
 } // namespace
 
 bool print_volumes(std::span<const MachiningScene> scenes) {
-    fmt::print("\n| nodes, pairs, lines from memory: cycles |");
-    for (const MachiningScene& scene : scenes) fmt::print(" {} |", scene.name);
-    fmt::print("\n|---|");
-    for (size_t i = 0; i < scenes.size(); ++i) fmt::print("---|");
-    fmt::print("\n");
-    for (const Bodies bodies : {Bodies::records, Bodies::points}) {
-        print_sizes(scenes, bodies);
-        if (!print_rows(scenes, bodies)) {
-            fmt::print(stderr, "spheres and boxes do not agree, so this says nothing\n");
-            return false;
-        }
-    }
-    return true;
+    if (print_scenes(scenes) && print_case_study()) return true;
+    fmt::print(stderr, "a segment was refused, or devices do not agree, so this says nothing\n");
+    return false;
 }
 
 } // namespace bench

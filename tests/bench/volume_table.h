@@ -6,8 +6,9 @@
 
 namespace bench {
 
-/// Prints the work and time of a thread with boxes and with the paper's spheres, for records and
-/// for the points of scans at h = 0.5. False if two searches disagree.
+/// Runs the scenes on devices with boxes and with the paper's spheres, for records and for the
+/// points of scans at h = 0.5, and the case study of the paper; prints the tables. False if two
+/// devices disagree.
 bool print_volumes(std::span<const MachiningScene> scenes);
 
 } // namespace bench

@@ -42,8 +42,9 @@ struct Scene {
 };
 
 inline uint32_t put_model(std::vector<Line>& memory, LineSpace& space, Side side,
-                          const std::vector<Record>& records, uint32_t leaf_size) {
-    ModelWriter writer{.space = &space, .side = side, .epoch = 1};
+                          const std::vector<Record>& records, uint32_t leaf_size,
+                          Volumes volumes = Volumes::boxes) {
+    ModelWriter writer{.space = &space, .side = side, .volumes = volumes, .epoch = 1};
     Branch root;
     if (!records.empty()) root = add_tree(writer, records, leaf_size).value();
     const uint32_t header = add_header(writer, root).value();
@@ -52,17 +53,22 @@ inline uint32_t put_model(std::vector<Line>& memory, LineSpace& space, Side side
 }
 
 inline Scene scene_of(std::vector<Record> tools, std::vector<Record> works, const Segment& segment,
-                      uint64_t limit, uint32_t leaf_size = 8) {
+                      uint64_t limit, uint32_t leaf_size = 8, Volumes volumes = Volumes::boxes) {
     const size_t lines = 2 * (tools.size() + works.size()) + 16;
     Scene scene{.memory = std::vector<Line>(lines), .tools = tools, .works = works};
     LineSpace space{.end = static_cast<uint32_t>(lines)};
     scene.query = {.segment = segment,
-                   .tool_header = put_model(scene.memory, space, Side::tool, tools, leaf_size),
+                   .tool_header =
+                       put_model(scene.memory, space, Side::tool, tools, leaf_size, volumes),
                    .tool_epoch = 1,
                    .work_epoch = 1,
                    .limit = limit};
-    scene.query.work_header = put_model(scene.memory, space, Side::work, works, leaf_size);
+    scene.query.work_header = put_model(scene.memory, space, Side::work, works, leaf_size, volumes);
     return scene;
+}
+
+inline Record record_named(const Scene& scene, uint32_t name) {
+    return records_in(scene.memory[name / records_per_line])[name % records_per_line];
 }
 
 /// What a scene is made of.

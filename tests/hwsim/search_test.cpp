@@ -8,10 +8,6 @@
 namespace hwsim {
 namespace {
 
-Record record_named(const Scene& scene, uint32_t name) {
-    return records_in(scene.memory[name / records_per_line])[name % records_per_line];
-}
-
 void expect_as_everything_compared(const Scene& scene) {
     const Answer found = search(scene.memory, scene.query);
     ASSERT_EQ(found.stop, Stop::none);

@@ -38,6 +38,8 @@ TEST(DeviceSheet, ShowsTheSlackOfAPermittedBlock) {
     EXPECT_EQ(value_of(sheet, "permitted"), "+750.0 ms");
     EXPECT_EQ(value_of(sheet, "due"), "+875.0 ms");
     EXPECT_EQ(value_of(sheet, "cycles"), "1000");
+    EXPECT_EQ(value_of(sheet, "lines made"), "7");
+    EXPECT_EQ(value_of(sheet, "control busy"), "25 %");
     EXPECT_EQ(value_of(sheet, "busy"), "25 %") << "2000 of 1000 cycles of 8 elements";
     EXPECT_EQ(value_of(sheet, "PERMIT_SEQ"), "3");
     EXPECT_EQ(value_of(sheet, "STOP"), "none");

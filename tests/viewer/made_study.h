@@ -43,6 +43,7 @@ inline app::CoprocessorResult result_of(const std::vector<MadeAnswer>& answers) 
                                                     : static_cast<uint32_t>(3 * i + 4)};
         block.cycles = 1000;
         block.nodes = 12;
+        block.lines = 7;
         counted.counters[static_cast<size_t>(hwsim::Counter::cycles)] += 1000;
         counted.counters[static_cast<size_t>(hwsim::Counter::busy)] += 2000;
         block.after = counted;
@@ -60,6 +61,8 @@ inline app::CoprocessorResult result_of(const std::vector<MadeAnswer>& answers) 
         result.timing.missed += answer.permitted && timing.is_late();
     }
     result.run.totals = counted;
+    result.timing.taken = 4.0;
+    result.timing.making = 1.0;
     return result;
 }
 

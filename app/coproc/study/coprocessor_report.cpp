@@ -83,16 +83,6 @@ double joules(const CoprocessorResult& result, double working) {
            + part(energy.memory_line, moved) + energy.idle_watts * working;
 }
 
-/// What the control makes for the device.
-uint64_t lines_made(const CoprocessorResult& result) {
-    uint64_t lines = 0;
-    for (const DeviceBlock& block : result.run.blocks) lines += block.lines;
-    return lines;
-}
-double share_of_control(const CoprocessorResult& result) {
-    return result.timing.taken > 0.0 ? result.timing.making / result.timing.taken : 0.0;
-}
-
 std::string block_text(const CoprocessorResult& result, size_t block) {
     return fmt::format("block {}, line {}", block, result.run.check.blocks[block].line);
 }
@@ -129,6 +119,7 @@ Json config_json(const CoprocessorResult& result) {
              {{"clock_mhz", d.clock_mhz},
               {"elements", d.elements},
               {"threads", d.threads},
+              {"volumes", name_of(d.volumes)},
               {"stack_depth", d.stack_depth},
               {"node_cache_lines", d.node_cache_lines},
               {"record_cache_lines", d.record_cache_lines},
@@ -233,6 +224,8 @@ DeviceFigures figures(const CoprocessorResult& result) {
     f.node_hits = fractions.node_hits.value_or(0.0);
     f.record_hits = fractions.record_hits.value_or(0.0);
     f.joules = joules(result, working);
+    for (const DeviceBlock& block : result.run.blocks) f.lines_made += block.lines;
+    if (result.timing.taken > 0.0) f.control_share = result.timing.making / result.timing.taken;
     return f;
 }
 
@@ -258,8 +251,8 @@ std::string coprocessor_text(const CoprocessorResult& result) {
                     result.run.blocks.size(), totals[Counter::queries], totals[Counter::nodes],
                     totals[Counter::pair_tests], totals[Counter::cycles]));
     add("control", fmt::format("makes {} lines for the coprocessor in {}: {:.3g} % of the time",
-                               lines_made(result), time_text(result.timing.making),
-                               100.0 * share_of_control(result)));
+                               f.lines_made, time_text(result.timing.making),
+                               100.0 * f.control_share));
     add("latency", fmt::format("median {}, 99th percentile {}, maximum {}", time_text(f.p50),
                                time_text(f.p99), time_text(f.longest)));
     add("rate", fmt::format("{:.0f} queries per second while busy; busy {:.3g} % of the time",
@@ -311,7 +304,7 @@ std::string coprocessor_json(const CoprocessorResult& result) {
           {"tightest", timing.tightest ? Json(*timing.tightest) : Json(nullptr)},
           {"busy_share", f.busy_fraction},
           {"control_seconds", timing.making},
-          {"control_share", share_of_control(result)},
+          {"control_share", f.control_share},
           {"queries_per_second", f.queries_per_second},
           {"latency", {{"p50", f.p50}, {"p99", f.p99}, {"max", f.longest}}},
           {"stalls",

@@ -44,6 +44,8 @@ struct DeviceFigures {
     double node_hits = 0.0, record_hits = 0.0;                      // fractions
     double bytes_per_second = 0.0;                                  // from memory, while busy
     double joules = 0.0;                                            // estimate
+    uint64_t lines_made = 0;    // by the control, for the device
+    double control_share = 0.0; // of the time, for which it makes them
 };
 
 DeviceFigures figures(const CoprocessorResult& result);

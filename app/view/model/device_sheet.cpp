@@ -132,7 +132,8 @@ DevicePart work_part(const Subject& subject) {
              {"segments", fmt::format("{}", block.permit.segments)},
              {"nodes", fmt::format("{}", block.nodes)},
              {"pairs", fmt::format("{}", block.pairs)},
-             {"lines", fmt::format("{}", lines)}},
+             {"lines read", fmt::format("{}", lines)},
+             {"lines made", fmt::format("{}", block.lines)}},
             true};
 }
 
@@ -197,6 +198,7 @@ DevicePart run_part(const ViewModel& model) {
     part.lines.push_back({"latency p50", time_text(study.figures->p50)});
     part.lines.push_back({"latency max", time_text(study.figures->longest)});
     part.lines.push_back({"device busy", percent(study.figures->busy_fraction)});
+    part.lines.push_back({"control busy", percent(study.figures->control_share)});
     if (study.agreement->missed > 0)
         part.lines.push_back({"missed", fmt::format("{}", study.agreement->missed), Tone::bad});
     part.lines.push_back({"false alarms", fmt::format("{}", study.agreement->false_alarms)});

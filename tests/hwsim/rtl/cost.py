@@ -19,12 +19,12 @@ import tempfile
 LIMITS = {
     "path_unit": ((3_400, 1_950, 12, 0), (1_700, 1_050, 6, 0)),
     "gap_unit": ((4_900, 5_400, 16, 0), (2_900, 1_950, 10, 0)),
-    "check_unit": ((6_300, 2_400, 0, 0), (3_700, 920, 0, 0)),
+    "check_unit": ((3_600, 2_400, 0, 0), (3_100, 920, 0, 0)),
     "line_cache": ((4_300, 1_400, 0, 16), (1_400, 320, 0, 16)),
     "search_thread": ((8_000, 3_250, 0, 0), (4_900, 3_250, 0, 0)),
     "permit_unit": ((4_900, 1_700, 4, 5), (1_900, 1_500, 2, 0)),
-    "ring_unit": ((9_000, 4_200, 0, 0), (5_300, 3_150, 0, 0)),
-    "memory_unit": ((7_000, 2_700, 0, 2), (4_200, 1_250, 0, 2)),
+    "ring_unit": ((7_700, 4_200, 0, 0), (5_200, 3_150, 0, 0)),
+    "memory_unit": ((4_500, 2_700, 0, 2), (3_600, 1_250, 0, 2)),
 }
 FAMILIES = {"ECP5": "synth_ecp5", "Xilinx 7": "synth_xilinx -family xc7 -flatten"}
 FILES = ("device", "path_unit", "gap_unit", "check_unit", "line_cache", "search_thread", "search_element", "permit_unit",

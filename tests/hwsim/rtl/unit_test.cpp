@@ -102,7 +102,7 @@ TEST(PathUnit, DividesAndMovesAsTheEmulator) {
         if (is_asked)
             expected.back() = {true,
                                thread,
-                               division_of(pair, segment),
+                               division_of(pair, segment, Volumes::boxes),
                                {offset_at(segment, pair.first), offset_at(segment, pair.last)}};
 
         const std::optional<PathAnswer> now = expected[1];
