@@ -189,6 +189,11 @@ std::string IniReader::take(const std::string& key, const std::string& value) {
     if (name == "TRAJ LINEAR_UNITS") {
         file.machine_unit = unit_named(value);
         if (!file.machine_unit) return "LINEAR_UNITS must be mm or inch";
+    } else if (name == "TRAJ ANGULAR_UNITS") {
+        const std::string unit = core::lower_case(value);
+        if (unit != "deg" && unit != "degree" && number_in(value) != 1.0)
+            return "ANGULAR_UNITS must be degree: Feeler takes the angles of the machine as "
+                   "degrees";
     } else if (name == "RS274NGC PARAMETER_FILE") {
         file.parameters = resolved(value);
     } else if (name == "EMCIO TOOL_TABLE") {

@@ -105,18 +105,17 @@ double bend_between(const CornerSide& first, const CornerSide& second);
 /// The angle of an arc, radians; positive if counter-clockwise as seen against the normal of the
 /// plane.
 ///
-/// An end within 1e-6 radians of the start is a full turn (LinuxCNC: CIRCLE_FUZZ).
+/// An end within `full_circle_gap` of the start is a full turn (LinuxCNC 2.9: CART_FUZZ).
+inline constexpr double full_circle_gap = 1e-8; // mm
 inline double arc_angle(const double (&start)[2], const double (&end)[2], const double (&centre)[2],
                         int turns) {
     constexpr double full_turn = 2.0 * std::numbers::pi;
-    constexpr double fuzz = 1e-6;
     const double start_angle = core::atan2(start[1] - centre[1], start[0] - centre[0]);
     const double end_angle = core::atan2(end[1] - centre[1], end[0] - centre[0]);
     const double sign = turns < 0 ? -1.0 : 1.0;
     double angle = sign * (end_angle - start_angle);
     if (angle < 0.0) angle += full_turn;
-    if (angle < fuzz) angle = full_turn;
-    if (start[0] == end[0] && start[1] == end[1]) angle = full_turn;
+    if (core::hypot(end[0] - start[0], end[1] - start[1]) < full_circle_gap) angle = full_turn;
     return sign * (angle + full_turn * (std::abs(turns) - 1));
 }
 

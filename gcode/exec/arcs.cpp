@@ -197,6 +197,25 @@ core::Result<SeenArc> flat_arc(const Execution& execution, const PlaneAxes& axes
     return arc;
 }
 
+/// Ends that are neither the same nor clearly apart: a control may make a full circle or next to
+/// nothing. Grbl decides by the angle, in single floats.
+core::Result<void> check_ends(const Execution& execution, const SeenArc& arc,
+                              const double (&centre)[2]) {
+    constexpr double least_angle = 1e-6; // radians
+    const double gap = core::hypot(arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]);
+    const double radius = core::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    if (gap < 0.5 * full_circle_gap) return {};
+    const bool is_grbl = execution.dialect.id == DialectId::grbl;
+    if (gap > 50.0 * full_circle_gap && !(is_grbl && gap < least_angle * radius)) return {};
+    return core::fail(
+        ErrorCode::unsupported,
+        fmt::format("{}: the arc ends {:.3g} mm from its start, so the control may "
+                    "make a full circle or none; let it end where it starts, or leave "
+                    "it out",
+                    arc.code, gap),
+        arc.where);
+}
+
 core::Result<int> turns_of(const Execution& execution, bool clockwise) {
     const Word* word = execution.statement.word('P');
     if (!word) return clockwise ? -1 : 1;
@@ -324,6 +343,7 @@ core::Result<void> move_along_arc(Execution& execution) {
     FEELER_TRY(const SeenArc arc, flat_arc(execution, axes, end));
     ArcFeed command{.end = end, .plane = modal.plane, .centre = {}, .turns = 0, .feed = 0.0};
     if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;
+    if (auto checked = check_ends(execution, arc, command.centre); !checked) return checked;
     FEELER_TRY(command.turns, turns_of(execution, arc.clockwise));
     const size_t normal = axes.normal;
     std::optional<double> rise;

@@ -316,6 +316,7 @@ TEST(ProgramOptions, NameTheLineOfAMistakeInAFile) {
     refused("--tool-table", "T1 Zlong\n", "'Zlong': is not a letter and a number");
     refused("--tool-table", "T1.5 Z1\n", "T must be a whole number");
     refused("--ini", "[TRAJ]\nLINEAR_UNITS = furlong\n", "bad.txt:2: LINEAR_UNITS must be");
+    refused("--ini", "[TRAJ]\nANGULAR_UNITS = radian\n", "bad.txt:2: ANGULAR_UNITS must be degree");
     refused("--ini", "#INCLUDE other.ini\n", "#INCLUDE is not supported");
 }
 

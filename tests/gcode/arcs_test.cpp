@@ -42,6 +42,19 @@ TEST(Arc, TurnsAsOftenAsPSays) {
     EXPECT_THAT(error_of("G3 I5 P1.5 F100", DialectId::linuxcnc), HasSubstr("1:7: P1.5"));
 }
 
+TEST(Arc, IsAFullCircleIfItsEndsMeetAndRefusedIfThatIsNotCertain) {
+    for (const DialectId id : {DialectId::linuxcnc, DialectId::fanuc, DialectId::grbl}) {
+        EXPECT_EQ(error_of("G90 G2 X0 Y0 I150 F100", id), "");
+        EXPECT_THAT(error_of("G90 G2 X0 Y0.0000001 I150 F100", id),
+                    HasSubstr("a full circle or none"));
+        EXPECT_EQ(error_of("G90 G2 X0 Y0.01 I150 F100", id), "");
+    }
+    // 7e-7 radians: Grbl decides by the angle.
+    EXPECT_EQ(error_of("G90 G2 X0 Y0.0001 I150 F100", DialectId::linuxcnc), "");
+    EXPECT_THAT(error_of("G90 G2 X0 Y0.0001 I150 F100", DialectId::grbl),
+                HasSubstr("ends 0.0001 mm from its start"));
+}
+
 TEST(Arc, WithARadiusTakesTheShortOrTheLongWay) {
     EXPECT_EQ(trace("G2 X10 Y10 R10 F100"),
               "arc_feed x=10 y=10 z=0 plane=XY centre=10,0 turns=-1 feed=100\n");

@@ -114,13 +114,14 @@ TEST(Lowering, TurnsTheRightWayInEveryPlane) {
         std::string_view text;
         int normal;
         double angle;
-    } cases[] = {{"G17 G2 X10 I5 F1", 2, -pi},        {"G17 G3 X10 I5 F1", 2, pi},
-                 {"G18 G2 X10 I5 F1", 1, -pi},        {"G18 G3 X10 I5 F1", 1, pi},
-                 {"G19 G2 Y10 J5 F1", 0, -pi},        {"G19 G3 Z10 K5 F1", 0, pi},
-                 {"G17 G2 I5 F1", 2, -2 * pi},        {"G17 G3 I5 Z1 F1", 2, 2 * pi},
-                 {"G17 G2 I5 P3 F1", 2, -6 * pi},     {"G17 G3 X10 I5 P2 F1", 2, 3 * pi},
-                 {"G17 G3 X5 Y5 I5 F1", 2, 1.5 * pi}, {"G17 G2 X5 Y5 I5 F1", 2, -0.5 * pi},
-                 {"G18 G3 X5 Z5 I5 F1", 1, 0.5 * pi}};
+    } cases[] = {{"G17 G2 X10 I5 F1", 2, -pi},          {"G17 G3 X10 I5 F1", 2, pi},
+                 {"G18 G2 X10 I5 F1", 1, -pi},          {"G18 G3 X10 I5 F1", 1, pi},
+                 {"G19 G2 Y10 J5 F1", 0, -pi},          {"G19 G3 Z10 K5 F1", 0, pi},
+                 {"G17 G2 I5 F1", 2, -2 * pi},          {"G17 G3 I5 Z1 F1", 2, 2 * pi},
+                 {"G17 G2 I5 P3 F1", 2, -6 * pi},       {"G17 G3 X10 I5 P2 F1", 2, 3 * pi},
+                 {"G17 G3 X5 Y5 I5 F1", 2, 1.5 * pi},   {"G17 G2 X5 Y5 I5 F1", 2, -0.5 * pi},
+                 {"G18 G3 X5 Z5 I5 F1", 1, 0.5 * pi},   {"G17 G3 Y0.0001 I-200 F1", 2, 5e-7},
+                 {"G17 G2 Y-0.0001 I-200 F1", 2, -5e-7}};
     for (const auto& expected : cases) {
         Environment environment = known_environment(DialectId::linuxcnc);
         const auto motions = motions_of(expected.text, environment);
