@@ -14,7 +14,10 @@ namespace app {
 namespace {
 
 constexpr double same_place = 1e-6; // mm or degrees
-constexpr double full_turn = 1e-6;  // an arc that ends this close to its start, radians
+
+// LinuxCNC makes a full circle if the ends of an arc are nearer than 1e-8 of its unit. Between
+// these gaps that is not certain, as lengths were converted; mm.
+constexpr double least_gap = 0.5e-8, certain_gap = 5e-7;
 
 bool is_near(const core::AxisValues& a, const core::AxisValues& b) {
     for (size_t i = 0; i < core::axis_count; ++i)
@@ -48,14 +51,22 @@ std::optional<int> main_axis(const core::Vec3& normal) {
     return {};
 }
 
+double gap_in_plane(const core::Vec3& from, const core::Vec3& to, int normal) {
+    core::Vec3 gap = to - from;
+    gap[normal] = 0.0;
+    return glm::length(gap);
+}
+
 /// The angle from one point to another about an axis through a centre, as a control counts it: more
 /// than 0 and up to a full turn counterclockwise seen from the positive axis.
 double turn_about(const core::Vec3& from, const core::Vec3& to, const core::Vec3& centre,
                   int normal) {
     const int u = (normal + 1) % 3, v = (normal + 2) % 3;
     const core::Vec3 a = from - centre, b = to - centre;
+    const double whole = 2.0 * std::numbers::pi;
+    if (gap_in_plane(from, to, normal) < least_gap) return whole;
     const double angle = core::atan2(a[u] * b[v] - a[v] * b[u], a[u] * b[u] + a[v] * b[v]);
-    return angle > full_turn ? angle : angle + 2.0 * std::numbers::pi;
+    return angle > 0.0 ? angle : angle + whole;
 }
 
 double distance_from_axis(const core::Vec3& point, const core::Vec3& centre, int normal) {
@@ -73,7 +84,7 @@ core::ArcPath arc_of(const LiveMotion& motion, int normal, const core::AxisValue
     // Counted about the motion's own normal, or clockwise about it: LinuxCNC's pmCircleInit.
     const bool is_reversed = motion.normal[normal] < 0.0, is_clockwise = motion.turns < 0;
     double angle = turn_about(from, end, centre, normal);
-    if (is_reversed != is_clockwise) angle = angle < whole - full_turn ? whole - angle : whole;
+    if (is_reversed != is_clockwise && angle < whole) angle = whole - angle;
     angle += whole * (is_clockwise ? -1 - motion.turns : motion.turns);
     return {normal, centre, is_reversed != is_clockwise ? -angle : angle};
 }
@@ -142,13 +153,33 @@ core::SpindleChange spindle_of(const LiveMotion& motion, bool speed_by_hand) {
     return spindle;
 }
 
-/// What is wrong with LinuxCNC's limits for a rapid without a tolerance: how far its corners are
-/// rounded follows from those of the ini file, and pins (ini.x.max_acceleration) change them.
+/// The greatest deviation of a corner between straight motions of X, Y and Z, as a multiple of the
+/// tolerance. The first one begins to give way 2 T / cos(t) before the corner, where t is half the
+/// angle between them, and brakes with a; the next accelerates with k a, so at most
+/// 4 k / (1 + sqrt k)^2 of T is left of the corner. LinuxCNC halves the accelerations of motions
+/// that are blended, sometimes only that of the first, and the next one may have any direction: k
+/// is at most twice the greatest acceleration of all directions over that of the first motion.
+///
+/// Source: LinuxCNC 2.9, tp.c, tpComputeBlendVelocity; measured in tests/guard.
+double corner_factor(const LiveMotion& motion, const core::Machine& machine) {
+    constexpr double most = 4.0, cycles = 1.05; // how far a servo cycle goes
+    double square = 0.0;
+    for (size_t i = 0; i < 3; ++i) {
+        const core::MachineAxis& axis = machine.axes[i];
+        if (!axis.present) continue;
+        if (!axis.acceleration) return cycles * most;
+        square += *axis.acceleration * *axis.acceleration;
+    }
+    if (!(motion.acceleration > 0.0)) return cycles * most;
+    const double root = std::sqrt(2.0 * std::sqrt(square) / motion.acceleration);
+    return cycles * most * (root / (1.0 + root)) * (root / (1.0 + root));
+}
+
+/// What is wrong with LinuxCNC's limits for a straight motion that is blended: how far its corners
+/// are rounded follows from those of the ini file, and pins (ini.x.max_acceleration) change them.
 std::string problem_of_speeds(const LiveMotion& motion, const core::Machine& machine) {
     constexpr double slack = 0.01;
-    const bool is_rapid = motion.purpose == FEELER_RAPID || motion.purpose == FEELER_TOOL_CHANGE;
-    if (!is_rapid || moves_others(motion) || motion.blending != FEELER_BLENDED
-        || motion.tolerance > 0.0)
+    if (motion.shape != FEELER_LINE || moves_others(motion) || motion.blending != FEELER_BLENDED)
         return {};
     double square = 0.0, speed = core::infinity, acceleration = core::infinity;
     for (size_t i = 0; i < 3; ++i)
@@ -162,11 +193,16 @@ std::string problem_of_speeds(const LiveMotion& motion, const core::Machine& mac
     }
     const char* const why = ", so how far corners are rounded is not known. Set the pins "
                             "ini.*.max_velocity and ini.*.max_acceleration back to the ini file.";
-    if (acceleration < core::infinity && motion.acceleration < (1.0 - slack) * acceleration)
-        return fmt::format("LinuxCNC makes this rapid with {:.4g} mm/s2, and the ini file says "
+    const bool is_free_rapid =
+        (motion.purpose == FEELER_RAPID || motion.purpose == FEELER_TOOL_CHANGE)
+        && motion.tolerance == 0.0;
+    const double least = is_free_rapid && acceleration < core::infinity ? acceleration : 0.0;
+    if (motion.acceleration < (1.0 - slack) * least
+        || motion.acceleration > (1.0 + slack) * acceleration)
+        return fmt::format("LinuxCNC makes this motion with {:.4g} mm/s2, and the ini file says "
                            "{:.4g}{}",
                            motion.acceleration, acceleration, why);
-    if (motion.most_speed > (1.0 + slack) * speed)
+    if (is_free_rapid && motion.most_speed > (1.0 + slack) * speed)
         return fmt::format("LinuxCNC makes this rapid with up to {:.4g} mm/s, and the ini file "
                            "says {:.4g}{}",
                            motion.most_speed, speed, why);
@@ -391,6 +427,15 @@ std::string LiveCheck::objection(const LiveMotion& motion) const {
                                core::axis_letters[i]);
     if (motion.shape == FEELER_ARC && !main_axis(vector_of(motion.normal)))
         return "Its arc lies in no main plane.";
+    if (motion.shape == FEELER_ARC) {
+        const double gap =
+            gap_in_plane(point_of(axis_values(motion.from)), point_of(axis_values(motion.to)),
+                         *main_axis(vector_of(motion.normal)));
+        if (gap > least_gap && gap < certain_gap)
+            return fmt::format("Its arc ends {:.2g} mm from its start, so it may be a full circle "
+                               "or none.",
+                               gap);
+    }
     return problem_of_speeds(motion, judge_.setup().machine);
 }
 
@@ -417,9 +462,14 @@ std::string LiveCheck::begin(const LiveMotion& motion) {
 /// The motion with how far the corner at its start may be rounded: by the mode of the one before,
 /// if that is wider.
 LiveMotion LiveCheck::with_corner(LiveMotion motion) const {
+    const auto widen = [&](LiveMotion& at) {
+        if (!moves_others(at)) at.tolerance *= corner_factor(at, judge_.setup().machine);
+    };
+    widen(motion);
     const bool is_rapid = motion.purpose == FEELER_RAPID;
     if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0) return motion;
-    const LiveMotion& before = waiting_.back().queued;
+    LiveMotion before = waiting_.back().queued;
+    widen(before);
     if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID)
         || moves_others(before) != moves_others(motion)) // feeler_tp lets it begin at rest
         return motion;

@@ -110,7 +110,6 @@ public:
         next.blending = FEELER_EXACT_STOP;
         next.feed = 10.0;
         next.most_speed = 10.0; // of the machine's limits
-        next.acceleration = 1e4;
     }
 
     /// Queues a line to X, Y and Z of the tip of tool 1 in G54.
@@ -130,6 +129,7 @@ public:
         motion.follows_part = follows_part ? 1 : 0;
         std::copy(std::begin(stopped_at), std::end(stopped_at), std::begin(motion.stopped_at));
         std::copy(std::begin(goal), std::end(goal), std::begin(motion.from));
+        if (motion.acceleration == 0.0) motion.acceleration = acceleration_of(motion);
         motion.line = static_cast<int32_t>(number);
         if (std::exchange(was_jogged, false)) motion.from_rest = 1;
         if (ask_kinematics) ask_kinematics(motion);
@@ -140,6 +140,17 @@ public:
         follows_part = false;
         feeler_store(&ring->written, number);
         return number;
+    }
+
+    /// Along a straight line: as far as all axes can.
+    double acceleration_of(const feeler_segment& motion) const {
+        double length = 0.0, longest = 0.0;
+        for (size_t i = 0; i < 3; ++i) {
+            const double way = std::abs(motion.to[i] - motion.from[i]);
+            length = std::hypot(length, way);
+            longest = std::max(longest, way);
+        }
+        return longest > 0.0 ? most_acceleration * length / longest : most_acceleration;
     }
 
     uint64_t permitted() const {
@@ -181,7 +192,8 @@ public:
     }
 
     std::unique_ptr<feeler_ring> ring = std::make_unique<feeler_ring>();
-    feeler_segment next{}; // what the next motion has besides its path
+    feeler_segment next{};             // what the next motion has besides its path
+    double most_acceleration = 1000.0; // of each axis
     std::function<void(feeler_segment&)> ask_kinematics;
     double goal[9] = {};
     double stopped_at[9] = {};
@@ -597,6 +609,51 @@ TEST_F(GuardedMachine, SaysWhereItStopsAndThatItStillDoes) {
     EXPECT_THAT(told_[0], HasSubstr("an earlier violation is not cleared yet"));
 }
 
+/// LinuxCNC leaves a corner by more than its tolerance if it brakes less than it then accelerates.
+TEST_F(GuardedMachine, RoundsCornersMoreWhereAccelerationsDiffer) {
+    struct Limits {
+        double acceleration, within; // mm/s2; the deviation, as a multiple of the tolerance
+    };
+    for (const Limits& limits : {Limits{1000.0, 1.777}, {200.0, 2.73}, {5.0, 3.898}})
+        for (const double gap : {limits.within - 0.01, limits.within + 0.01}) {
+            Machine machine;
+            app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+            machine.rapid(0, 0, 30);
+            machine.line(0, 0, 20);
+            machine.next.blending = FEELER_BLENDED;
+            machine.next.tolerance = 0.5;
+            machine.next.acceleration = limits.acceleration;
+            machine.line(55.0 - 2.0 - 0.5 * gap, 0, 20); // 2 from the clamp, and the corner
+            check_all(guard);
+            EXPECT_EQ(machine.permitted(), gap > limits.within ? 3U : 2U)
+                << limits.acceleration << " " << gap;
+        }
+}
+
+/// LinuxCNC decides by the distance of the ends whether an arc is a full circle.
+TEST_F(GuardedMachine, TakesAnArcForAFullCircleOnlyIfItsEndsMeet) {
+    for (const double gap : {0.0, 1e-7, 1e-5, -1e-5}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.rapid(20, 0, 5);
+        machine.line(20, 0, -3);
+        feeler_segment arc = machine.next;
+        arc.shape = FEELER_ARC;
+        arc.purpose = FEELER_CURVE;
+        arc.normal[2] = 1.0;
+        std::copy(std::begin(machine.goal), std::end(machine.goal), std::begin(arc.to));
+        arc.to[1] += gap;
+        arc.centre[2] = arc.to[2];
+        machine.queue(arc);
+        machine.line(20, gap, 5);
+        machine.rapid(-20, 0, 5);
+        machine.rapid(-20, 0, -3); // where only a full circle has cut
+        check_all(guard);
+        const bool is_full = gap <= 0.0; // or nearly
+        EXPECT_EQ(machine.permitted(), gap == 1e-7 ? 2U : is_full ? 6U : 5U) << gap;
+    }
+}
+
 /// Pins of LinuxCNC change its limits while it runs.
 TEST_F(GuardedMachine, RefusesRapidsWithOtherLimitsThanItKnows) {
     const core::MachineAxis& axis = setup_.setup.machine.axes[0];
@@ -605,7 +662,8 @@ TEST_F(GuardedMachine, RefusesRapidsWithOtherLimitsThanItKnows) {
         double acceleration, speed;
         bool is_permitted;
     };
-    for (const Limits& limits : {Limits{1.0, 1.0, true}, {0.98, 1.0, false}, {1.0, 1.02, false}}) {
+    for (const Limits& limits :
+         {Limits{1.0, 1.0, true}, {0.98, 1.0, false}, {1.02, 1.0, false}, {1.0, 1.02, false}}) {
         Machine machine;
         app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
         machine.next.blending = FEELER_BLENDED;
@@ -1018,6 +1076,7 @@ TEST_F(GuardedMachine, SkipsMotionsThatWereDropped) {
 
 TEST_F(GuardedMachine, CountsInTheUnitOfTheMachine) {
     Machine inch;
+    inch.most_acceleration = 1000.0 / 25.4;
     app::Guard guard(setup_.setup, *inch.ring, 25.4, 0.1);
     feeler_segment motion = inch.next;
     motion.shape = FEELER_LINE;
@@ -1037,6 +1096,7 @@ TEST_F(GuardedMachine, CountsInTheUnitOfTheMachine) {
 TEST_F(GuardedMachine, CountsTolerancesAndCentresInTheUnitOfTheMachine) {
     const auto is_permitted = [&](const std::function<void(feeler_segment&)>& change) {
         Machine inch;
+        inch.most_acceleration = 1000.0 / 25.4;
         app::Guard guard(setup_.setup, *inch.ring, 25.4, 0.1);
         inch.goal[0] = 40.0 / 25.4;
         inch.goal[2] = (20.0 + tip) / 25.4;
@@ -1056,8 +1116,8 @@ TEST_F(GuardedMachine, CountsTolerancesAndCentresInTheUnitOfTheMachine) {
             motion.tolerance = tolerance / 25.4;
         };
     };
-    EXPECT_TRUE(is_permitted(blend(0.4)));
-    EXPECT_FALSE(is_permitted(blend(0.6)));
+    EXPECT_TRUE(is_permitted(blend(0.27)));
+    EXPECT_FALSE(is_permitted(blend(0.29)));
     const auto circle = [](double centre) {
         return [centre](feeler_segment& motion) {
             motion.shape = FEELER_ARC;

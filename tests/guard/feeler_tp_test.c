@@ -718,6 +718,163 @@ static void leaves_turning_corners_by_little(void) {
     EXPECT(farthest > 0.2 && turned > 0.01); /* it does blend */
 }
 
+/* Runs until all is made; the farthest that the planner is from two motions. */
+static double farthest_off(double (*off)(EmcPose const *now, void const *path), void const *path) {
+    double farthest = 0;
+    for (int i = 0; i < 200000; ++i) {
+        cycle(1);
+        EmcPose now;
+        tpGetPos(&tp, &now);
+        farthest = fmax(farthest, off(&now, path));
+        EXPECT(!*pins->holding);
+        if (i > 5 && tpIsDone(&tp)) break;
+    }
+    return farthest;
+}
+
+/* Passes on a motion while the one before is beyond its middle: LinuxCNC then makes no blend arc. */
+static void begin_first_of_two(double length, double feed) {
+    permit(ring->written);
+    cycle((int)(1000 * 0.7 * length / feed));
+}
+
+static double off_two_lines(EmcPose const *now, void const *path) {
+    EmcPose const *const pose = path;
+    double off[2];
+    off_line(now, &pose[0], &pose[1], 0, &off[0]);
+    off_line(now, &pose[1], &pose[2], 0, &off[1]);
+    return fmin(off[0], off[1]);
+}
+
+/* The guard counts a corner with what the accelerations of the two motions allow (corner_factor). */
+static void leaves_corners_by_no_more_than_the_guard_counts(void) {
+    srand(11);
+    ring->feed_tolerance = 0.1;
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.0);
+    EmcPose pose[3] = {at(0, 0, 0), at(0, 0, 0), at(0, 0, 0)};
+    double most = 0, widest = 0;
+    for (int k = 0; k < 700; ++k) {
+        double acceleration[2], length[2];
+        double const tolerance = pow(10, uniform(-1.5, 0.5)), feed = pow(10, uniform(0.5, 2));
+        config.arcBlendEnable = k % 3 != 0;
+        tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, tolerance);
+        for (int i = 0; i < 2; ++i) {
+            length[i] = pow(10, uniform(-0.5, 1.7));
+            acceleration[i] = pow(10, uniform(2, 3.5));
+            double const heading = uniform(-3.1, 3.1), height = uniform(-1, 1), flat = sqrt(1 - height * height);
+            pose[i + 1] = at(pose[i].tran.x + length[i] * flat * cos(heading),
+                             pose[i].tran.y + length[i] * flat * sin(heading),
+                             pose[i].tran.z + length[i] * height);
+            tpSetId(&tp, ++line_number);
+            EXPECT(tpAddLine(&tp, pose[i + 1], 2, feed, 100, acceleration[i], 0xff, 0, -1, tag) == TP_ERR_OK);
+            if (i == 0 && k % 2) begin_first_of_two(length[0], feed);
+        }
+        permit(ring->written);
+        /* Those of all directions include that of the first motion. */
+        double const root = sqrt(2.0 * fmax(1.0, acceleration[1] / acceleration[0]));
+        double const told = 1.05 * 4.0 * pow(root / (1.0 + root), 2) * tolerance;
+        double const off = farthest_off(off_two_lines, pose);
+        most = fmax(most, off / told);
+        widest = fmax(widest, off / tolerance);
+        pose[0] = pose[2];
+    }
+    printf("off the path by up to %.2f of what the guard counts, %.2f times the tolerance\n", most, widest);
+    EXPECT(most <= 1.0);
+    EXPECT(most > 0.5 && widest > 1.2); /* it does blend */
+}
+
+/* A line, and an arc about `centre` in the plane of X and Y. */
+struct line_and_arc {
+    EmcPose from, corner;
+    PmCartesian centre;
+    double radius;
+};
+static double off_line_and_arc(EmcPose const *now, void const *path) {
+    struct line_and_arc const *const p = path;
+    double off;
+    off_line(now, &p->from, &p->corner, 0, &off);
+    double const apart = hypot(now->tran.x - p->centre.x, now->tran.y - p->centre.y) - p->radius;
+    return fmin(off, hypot(apart, now->tran.z - p->corner.tran.z));
+}
+
+/* Corners with arcs keep to the path, whichever comes first and when. */
+static void keeps_to_the_path_at_arcs(void) {
+    srand(12);
+    ring->feed_tolerance = 0.1;
+    double farthest = 0;
+    for (int k = 0; k < 1000; ++k) {
+        EmcPose here;
+        tpGetPos(&tp, &here);
+        struct line_and_arc path = {.radius = pow(10, uniform(0, 2))};
+        double const length = pow(10, uniform(0, 1.7)), heading = uniform(-3.1, 3.1), feed = pow(10, uniform(1, 2));
+        double const turn = k % 4 == 0 ? 0 : uniform(-3.1, 3.1); /* 0: tangential */
+        double const sweep = uniform(0.1, 6.0), acceleration = pow(10, uniform(2.5, 3.5));
+        int const arc_first = k % 3 == 0, is_late = k % 2;
+        config.arcBlendEnable = k % 5 != 0;
+        tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, pow(10, uniform(-2, 0.3)));
+        PmCartesian const up = {0, 0, 1};
+        /* The arc is left of its heading, and begins or ends at the corner. */
+        double const at_corner = heading + turn;
+        double const end = arc_first ? at_corner - sweep : at_corner + sweep;
+        EmcPose arc_end;
+        if (arc_first) {
+            path.centre = here.tran;
+            path.centre.x -= path.radius * sin(end), path.centre.y += path.radius * cos(end);
+            path.corner = here;
+            path.corner.tran.x = path.centre.x + path.radius * sin(at_corner);
+            path.corner.tran.y = path.centre.y - path.radius * cos(at_corner);
+            path.from = path.corner;
+            path.from.tran.x += length * cos(heading), path.from.tran.y += length * sin(heading);
+            arc_end = path.corner;
+        } else {
+            path.from = path.corner = here;
+            path.corner.tran.x += length * cos(heading), path.corner.tran.y += length * sin(heading);
+            path.centre = path.corner.tran;
+            path.centre.x -= path.radius * sin(at_corner), path.centre.y += path.radius * cos(at_corner);
+            arc_end = path.corner;
+            arc_end.tran.x = path.centre.x + path.radius * sin(end);
+            arc_end.tran.y = path.centre.y - path.radius * cos(end);
+        }
+        for (int i = 0; i < 2; ++i) {
+            int const is_arc = (i == 0) == arc_first;
+            tpSetId(&tp, ++line_number);
+            EXPECT((is_arc ? tpAddCircle(&tp, arc_end, path.centre, up, 0, 3, feed, 100, acceleration, 0xff, 0, tag)
+                           : tpAddLine(&tp, arc_first ? path.from : path.corner, 2, feed, 100, acceleration, 0xff, 0,
+                                       -1, tag))
+                   == TP_ERR_OK);
+            if (is_arc) EXPECT(last_segment()->blending == FEELER_EXACT_PATH);
+            if (i == 0 && is_late) begin_first_of_two(arc_first ? path.radius * sweep : length, feed);
+        }
+        permit(ring->written);
+        farthest = fmax(farthest, farthest_off(off_line_and_arc, &path));
+    }
+    printf("off the path by up to %.2g\n", farthest);
+    EXPECT(farthest < 1e-5);
+}
+
+/* A contour of lines and arcs that touch each other is made without a stop. */
+static void does_not_stop_between_a_line_and_an_arc_that_touch(void) {
+    ring->feed_tolerance = 0.1;
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.05);
+    PmCartesian const up = {0, 0, 1}, centre = {40, 10, 0};
+    add_line(40, 0, 0);
+    EXPECT(tpAddCircle(&tp, at(50, 10, 0), centre, up, 0, 3, 50, 100, 1000, 0xff, 0, tag) == TP_ERR_OK);
+    add_line(50, 50, 0);
+    permit(ring->written);
+    double slowest = 1e9;
+    EmcPose before;
+    tpGetPos(&tp, &before);
+    for (int i = 0; i < 20000 && !(i > 5 && tpIsDone(&tp)); ++i) {
+        cycle(1);
+        EmcPose now;
+        tpGetPos(&tp, &now);
+        if (now.tran.x > 30 && now.tran.y < 20) slowest = fmin(slowest, distance(&before, &now) / 0.001);
+        before = now;
+    }
+    EXPECT(before.tran.y > 49.999);
+    EXPECT(slowest > 30);
+}
+
 /* A straight path of rotary axes alone cannot be left. */
 static void passes_blocks_of_a_rotary_axis_without_a_stop(void) {
     ring->feed_tolerance = 0.1;
@@ -770,6 +927,9 @@ int main(int count, char **words) {
         CASE(ends_the_program_when_a_pin_changes),
         CASE(ends_the_program_when_a_position_is_set),
         CASE(leaves_turning_corners_by_little),
+        CASE(leaves_corners_by_no_more_than_the_guard_counts),
+        CASE(keeps_to_the_path_at_arcs),
+        CASE(does_not_stop_between_a_line_and_an_arc_that_touch),
         CASE(passes_blocks_of_a_rotary_axis_without_a_stop),
         CASE(ends_the_program_when_the_kinematics_change),
     };
