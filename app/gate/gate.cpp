@@ -74,6 +74,10 @@ void Gate::from_sender(std::string_view bytes) {
 
 /// Grbl takes these out of what it receives before anything else.
 void Gate::act_at_once(char byte) {
+    if (byte == stop) { // of grblHAL: it drops lines, and answers none
+        links_.to_controller(std::string_view(&feed_hold, 1));
+        return say("the gate passes a stop (0x19) as a feed hold. Reset the controller to go on.");
+    }
     if (byte == cycle_start && is_derailed_)
         return say("lines would run from the wrong place. Reset Grbl to go on.");
     links_.to_controller(std::string_view(&byte, 1));
@@ -86,7 +90,8 @@ void Gate::act_at_once(char byte) {
         lines_.clear();
     }
     // A hold and an open door cancel jogs, too.
-    if (byte == jog_cancel || byte == feed_hold || byte == safety_door) cancel_jogs();
+    if (byte == jog_cancel || byte == feed_hold || byte == other_hold || byte == safety_door)
+        cancel_jogs();
 }
 
 void Gate::cancel_jogs() {
@@ -110,6 +115,7 @@ void Gate::take_line() {
     line->text = as_grbl_reads(from_sender_);
     line->kind = kind_of(line->text);
     from_sender_.clear();
+    greets_ = false;           // it does not wait for a greeting
     if (awaits_reset_) return; // Grbl loses it
     lines_.push_back(line);
     if (is_too_long) answer(line, error_reply(11));
@@ -169,7 +175,7 @@ bool Gate::handle_next() {
         return true;
     case GrblLine::home:
     case GrblLine::unlock:
-        ++changes_;
+        if (!is_checking_only_) ++changes_;
         if (line->kind == GrblLine::unlock && !is_derailed_) is_latched_ = false;
         line->stage = Stage::ready;
         return true;
@@ -432,12 +438,14 @@ void Gate::from_controller(std::string_view bytes) {
 
 void Gate::take_reply(const std::string& text) {
     last_heard_ = now_;
+    if (text.starts_with("ALARM:") || text.starts_with("Grbl")) waited_for_ = 0;
     if (text == "ok" || text.starts_with("error:")) return take_answer(text);
     if (text.starts_with("Grbl")) { // Grbl 1.1h ['$' for help]; GrblHAL 1.1f ...
         banner_ = text;
+        flush_replies();
         take_reset();
     } else if (text.starts_with("ALARM:")) {
-        take_alarm();
+        take_alarm(text);
     } else if (const auto status = read_status(text)) {
         links_.to_sender(text + "\r\n");
         return take_status(*status);
@@ -450,6 +458,7 @@ void Gate::take_reply(const std::string& text) {
 void Gate::take_answer(const std::string& text) {
     last_answer_ = now_;
     said_no_answer_ = false;
+    note_waited();
     if (outstanding_.empty()) {
         links_.note("Feeler: the controller answers where nothing was asked: " + text);
         ++changes_;
@@ -467,11 +476,16 @@ void Gate::take_answer(const std::string& text) {
     const bool was_checked = line->kind == GrblLine::code || line->kind == GrblLine::jog;
     answer(line, text);
     if (text == "ok") {
+        const bool was_alarmed = is_alarmed_;
         if (line->kind == GrblLine::unlock || line->kind == GrblLine::home) {
             is_alarmed_ = false;
-            ++changes_; // it may have been asked before
+            if (!is_checking_only_) ++changes_; // it may have been asked before
         }
-        if (line->kind == GrblLine::home) {
+        if (line->kind == GrblLine::unlock && std::exchange(may_have_slipped_, false))
+            say("the machine may have lost steps. Home it, or check its zero, before you go on.");
+        // Grbl answers so even when an alarm has ended it.
+        if (line->kind == GrblLine::home && was_alarmed) note_lost_homing();
+        if (line->kind == GrblLine::home && !is_lost_) {
             may_be_lost_ = false;
             was_homed_ = was_homed_ || !std::exchange(is_homed_, true);
         }
@@ -506,6 +520,7 @@ void Gate::take_answer(const std::string& text) {
 /// A line was taken in. Lines before it that have left the planner have been made.
 void Gate::note_made(const LinePointer& line) {
     expected_ = line->verdict.end;
+    has_changed_offset_ = has_changed_offset_ || line->verdict.changes_offset;
     if (is_checking_only_ || is_alarmed_ || is_derailed_ || awaits_reset_) return;
     // Grbl takes jogs when all other motions have ended.
     // They may be cancelled at any time, also by a button on the board: what they cut stays.
@@ -515,16 +530,28 @@ void Gate::note_made(const LinePointer& line) {
         return;
     }
     answered_through_ = line->number;
-    // Grbl waits until all motions before have ended.
+    // Grbl waits until all motions before have ended, but a reset ends that.
     if (line->verdict.stops_at_contact || (line->text.starts_with("G4P") && !line->verdict.moves)) {
-        made_through_ = line->number;
-        in_planner_.clear();
+        waited_for_ = line->number;
         return;
     }
     if (!line->verdict.fills_planner || !facts_.planner) return;
     in_planner_.push_back(line->number);
     for (; in_planner_.size() > *facts_.planner + behind_planner; in_planner_.pop_front())
         made_through_ = in_planner_.front();
+}
+
+/// The controller has gone on after a dwell or a probing.
+void Gate::note_waited() {
+    if (waited_for_ == 0) return;
+    made_through_ = std::max(made_through_, std::exchange(waited_for_, 0));
+    in_planner_.clear();
+}
+
+/// Grbl counts the steps of each phase of a homing from 0.
+void Gate::note_lost_homing() {
+    is_lost_ = true;
+    is_homed_ = was_homed_ = false;
 }
 
 /// Whether Grbl answers a line only after a while, although nothing moves: homing, a dwell.
@@ -542,7 +569,16 @@ bool Gate::takes_its_time(const Line& line) {
 
 void Gate::take_status(const GrblStatus& status) {
     const bool is_idle = status.state == "Idle";
+    if (status.state.find(',') != std::string::npos) { // of Grbl 0.9
+        if (!std::exchange(is_status_unread_, true))
+            say("the gate does not understand the status that the controller reports. It needs "
+                "Grbl 1.1.");
+        asking_ = Asking::nothing;
+        return lock_waiting();
+    }
+    may_have_slipped_ = may_have_slipped_ || status.state == "Sleep";
     const bool stands = outstanding_.empty() && now_ - last_answer_ >= rest;
+    if (is_idle && stands) note_waited();
     if (is_idle && stands && !is_checking_only_) {
         made_through_ = std::max(made_through_, answered_through_);
         in_planner_.clear();
@@ -588,15 +624,25 @@ void Gate::take_status(const GrblStatus& status) {
     ask_next_fact();
 }
 
+/// The place of the machine, from where it is in the work, as it was when the control was asked.
+core::Vec3 Gate::place_of(const core::Vec3& wpos) const {
+    return facts_.scaled(wpos) + facts_.zero() + core::Vec3(0.0, 0.0, facts_.length_offset);
+}
+
 /// The machine stands. If this is not where its last line ends, a line was lost, or somebody else
 /// has moved it.
 void Gate::compare_place(const GrblStatus& status) {
-    constexpr double most = 0.05; // mm: rounding of the report
-    if (!expected_ || !status.mpos || !knows_settings_ || is_checking_only_ || is_alarmed_
-        || is_derailed_ || awaits_reset_ || asking_ != Asking::nothing || needs_asking())
+    constexpr double rounding = 0.05; // mm: of the report
+    if (!expected_ || !(status.mpos || status.wpos) || !knows_settings_ || is_checking_only_
+        || is_alarmed_ || is_derailed_ || awaits_reset_ || asking_ != Asking::nothing
+        || needs_asking())
         return;
-    const core::Vec3 away = facts_.scaled(*status.mpos) - *expected_;
-    if (std::max({std::abs(away.x), std::abs(away.y), std::abs(away.z)}) <= most) return;
+    // An offset of work changes with a line that asks anew, or with G54 to G59.
+    if (!status.mpos && has_changed_offset_) return;
+    const core::Vec3 away =
+        (status.mpos ? facts_.scaled(*status.mpos) : place_of(*status.wpos)) - *expected_;
+    const auto is_away = [&](int i) { return std::abs(away[i]) > rounding + 0.5 * facts_.step[i]; };
+    if (!is_away(0) && !is_away(1) && !is_away(2)) return;
     expected_.reset();
     ++changes_;
     say("the machine does not stand where its last line ends. The next line is checked from where "
@@ -604,6 +650,11 @@ void Gate::compare_place(const GrblStatus& status) {
 }
 
 void Gate::take_reset() {
+    const bool was_homing =
+        std::any_of(outstanding_.begin(), outstanding_.end(),
+                    [](const Sent& s) { return s.line && s.line->kind == GrblLine::home; });
+    if (was_homing) note_lost_homing();
+    greets_ = false;
     expected_.reset();
     drop_unsent();
     lines_.clear();
@@ -612,7 +663,7 @@ void Gate::take_reset() {
     from_sender_.clear();
     answered_through_ = made_through_; // motions may have been cut off
     asking_ = Asking::nothing;
-    may_be_lost_ = true;
+    may_be_lost_ = may_be_lost_ || !awaits_reset_; // a reset that was asked for starts nothing anew
     was_dry_ = is_checking_only_;
     jogs_ = 0;
     cancels_again_ = false;
@@ -623,7 +674,8 @@ void Gate::take_reset() {
     said_.clear();
 }
 
-void Gate::take_alarm() {
+void Gate::take_alarm(const std::string& text) {
+    may_have_slipped_ = may_have_slipped_ || text == "ALARM:1" || text == "ALARM:3";
     expected_.reset();
     drop_unsent();
     is_alarmed_ = true;
@@ -639,7 +691,7 @@ void Gate::ask_control() {
     if (asking_ != Asking::nothing || awaits_reset_ || !outstanding_.empty()) return;
     asking_ = Asking::status;
     changes_asked_for_ = changes_;
-    asked_status_ = now_;
+    asked_status_ = last_sent_ = now_;
     links_.to_controller(std::string_view(&status_request, 1));
 }
 
@@ -661,6 +713,7 @@ void Gate::ask_next_fact() {
     if (next_fact_ == std::size(requests)) return take_facts();
     const std::string_view request = requests[next_fact_++];
     outstanding_.push_back({nullptr, request.size() + 1});
+    last_sent_ = now_;
     links_.to_controller(std::string(request) + "\n");
 }
 
@@ -676,12 +729,14 @@ void Gate::take_facts() {
     facts_.is_reset = std::exchange(was_reset_, false);
     facts_.is_dry = std::exchange(was_dry_, false);
     knows_settings_ = true;
-    core::Vec3 position = facts_.scaled(position_);
-    if (position_is_of_work_)
-        position += facts_.zero() + core::Vec3(0.0, 0.0, facts_.length_offset);
+    const core::Vec3 position =
+        position_is_of_work_ ? place_of(position_) : facts_.scaled(position_);
+    has_changed_offset_ = false;
     // A board that starts takes its place for zero.
     facts_.is_lost = std::exchange(may_be_lost_, false) && glm::length(position) < least_travel
                      && (!was_asked_ || has_moved_ || glm::length(was_at_) >= least_travel);
+    facts_.ended_homing = std::exchange(is_lost_, false);
+    facts_.is_lost = facts_.is_lost || facts_.ended_homing;
     if (facts_.is_lost) is_homed_ = false;
     // If it was homed while it was asked, its answers may be from before the homing.
     const bool is_current = changes_ == changes_asked_for_;

@@ -66,8 +66,9 @@ private:
     void take_answer(const std::string& text);
     void take_status(const GrblStatus& status);
     void compare_place(const GrblStatus& status);
+    core::Vec3 place_of(const core::Vec3& wpos) const;
     void take_reset();
-    void take_alarm();
+    void take_alarm(const std::string& text);
 
     void go_on();
     bool handle_next();
@@ -89,6 +90,8 @@ private:
     void take_facts();
     void drop_unsent();
     void note_made(const LinePointer& line);
+    void note_waited();
+    void note_lost_homing();
     void follow();
     void say(const std::string& text);
 
@@ -108,6 +111,9 @@ private:
     bool has_jogged_ = false; // Grbl takes no G-code until the jogs have ended
     bool knows_settings_ = false, was_reset_ = false;
     bool may_be_lost_ = false;            // where the machine is, by a restart
+    bool is_lost_ = false;                // by a homing that was not finished
+    bool may_have_slipped_ = false;       // steps may be lost, by an alarm in motion or by sleep
+    bool is_status_unread_ = false;       // said once
     core::Vec3 was_at_ = core::Vec3(0.0); // when it was asked last, mm
     bool was_asked_ = false;
     bool is_set_up_ = false;                    // as the check says
@@ -129,6 +135,7 @@ private:
     core::Vec3 position_ = core::Vec3(0.0); // as reported
     // Where the machine stands behind the last line that it has taken, if that is known, mm.
     std::optional<core::Vec3> expected_;
+    bool has_changed_offset_ = false; // since it was asked
     bool position_is_of_work_ = false;
     std::string banner_, said_;
     bool is_checking_only_ = false; // Grbl's check mode: nothing moves
@@ -139,6 +146,9 @@ private:
     // taken in without jogs.
     uint64_t last_number_ = 0, made_through_ = 0, followed_ = 0, answered_through_ = 0;
     std::deque<uint64_t> in_planner_; // lines that may still be in the planner
+    // A dwell or a probing was answered: it has ended, unless the controller was reset meanwhile,
+    // which its next word shows. Then all before it was made.
+    uint64_t waited_for_ = 0;
     int64_t now_ = 0, last_answer_ = 0, last_heard_ = 0, last_sent_ = 0, asked_status_ = 0,
             last_refusal_ = 0,
             reset_at_ = 0; // ms

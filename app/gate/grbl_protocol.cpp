@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <iterator>
+#include <sstream>
 #include <vector>
 
 #include "core/base/text.h"
@@ -82,7 +84,7 @@ bool acts_at_once(char byte) {
     const auto code = static_cast<unsigned char>(byte);
     return byte == status_request || byte == feed_hold || byte == '~' || byte == soft_reset
            || code == 0x84 || code == 0x85 || (code >= 0x90 && code <= 0x9e) || code == 0xa0
-           || code == 0xa1;
+           || code == 0xa1 || byte == other_hold || byte == stop;
 }
 
 bool is_dropped(char byte) {
@@ -110,6 +112,20 @@ std::optional<size_t> GrblFacts::active() const {
     for (size_t i = at; i != std::string::npos; i = modes.find("G5", i + 1))
         if (i + 2 < modes.size() && modes[i + 2] >= '4' && modes[i + 2] <= '9')
             return static_cast<size_t>(modes[i + 2] - '4');
+    return {};
+}
+
+std::string GrblFacts::unknown_mode() const {
+    // G49 and the codes after it: the only ones of these groups that leave things as Grbl has them.
+    constexpr std::string_view known[] = {
+        "G0",  "G1",  "G2",  "G3",  "G38.2", "G38.3", "G38.4", "G38.5", "G80", "G54", "G55",
+        "G56", "G57", "G58", "G59", "G17",   "G18",   "G19",   "G20",   "G21", "G90", "G91",
+        "G93", "G94", "G40", "G61", "G91.1", "G43.1", "G49",   "G50",   "G97", "G98", "G99"};
+    std::istringstream words(modes);
+    for (std::string word; words >> word;)
+        if (word[0] == 'G'
+            && std::find(std::begin(known), std::end(known), word) == std::end(known))
+            return word;
     return {};
 }
 
@@ -151,7 +167,7 @@ void GrblFacts::take(std::string_view line) {
         const auto value = number_of(line.substr(equals + 1));
         if (!value) return;
         const std::string_view name = line.substr(0, equals);
-        if (name == "$12" && *value > 0.0) arc_tolerance = *value;
+        if (name == "$12") arc_tolerance = *value;
         if (name == "$13") reports_inches = *value != 0.0;
         for (int i = 0; i < 3; ++i)
             if (name == "$10" + std::to_string(i) && *value > 0.0) step[i] = 1.0 / *value;

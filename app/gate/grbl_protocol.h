@@ -29,12 +29,13 @@ std::string as_grbl_reads(std::string_view line);
 GrblLine kind_of(std::string_view text);
 
 /// Whether a byte acts at once, wherever it stands, and is no part of a line; those that Grbl 1.1
-/// knows.
+/// knows, and feed hold and stop of grblHAL.
 bool acts_at_once(char byte);
 /// Whether a byte is neither a part of a line nor known; Grbl drops it.
 bool is_dropped(char byte);
 
 constexpr char soft_reset = 0x18, status_request = '?', feed_hold = '!', cycle_start = '~';
+constexpr char other_hold = static_cast<char>(0x82), stop = 0x19; // of grblHAL
 constexpr char safety_door = static_cast<char>(0x84), jog_cancel = static_cast<char>(0x85);
 
 /// A status report: <Idle|MPos:0.000,0.000,0.000|FS:0,0|WCO:...>
@@ -54,11 +55,12 @@ struct GrblFacts {
     std::string stored_line;               // a start-up line that moves something ($N)
     std::optional<size_t> planner, buffer; // blocks, and bytes; empty if not stated
     core::Vec3 step = core::Vec3(0.0);     // mm; 0: not stated
-    double arc_tolerance = 0.002;          // mm
+    double arc_tolerance = 0.002;          // mm; 0 if it is less than the controller shows
     bool reports_inches = false;           // $13
     bool is_reset = false;                 // it was reset since it was asked before
     bool is_dry = false;                   // what it did since then was in check mode
     bool is_lost = false;                  // nobody knows where the machine is
+    bool ended_homing = false;             // because a homing was not finished
     bool was_homed = false;                // for the first time since it was started
     unsigned seen = 0;                     // one bit for each of G54 to G59, G92, G28, G30, TLO
     bool has_offsets() const { return seen == 0x3ff; }
@@ -66,6 +68,8 @@ struct GrblFacts {
 
     /// The work offset in use, 0 for G54; empty if the modes do not say it.
     std::optional<size_t> active() const;
+    /// A mode that Grbl 1.1 does not have; empty if there is none.
+    std::string unknown_mode() const;
     /// Where the program's zero is, in machine coordinates; without the length offset.
     core::Vec3 zero() const { return offsets[active().value_or(0)] + axis_offset; }
 

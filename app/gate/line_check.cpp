@@ -28,10 +28,11 @@ namespace app {
 namespace {
 
 constexpr std::string_view who = "the gate";
-constexpr size_t offset_count = 6;        // G54 to G59
-constexpr double most_correction = 0.2;   // of Z after the first cut, mm
-constexpr double most_arc_error = 0.02;   // mm
-constexpr double least_difference = 5e-4; // of numbers, mm or inches
+constexpr size_t offset_count = 6;         // G54 to G59
+constexpr double most_correction = 0.2;    // of Z after the first cut, mm
+constexpr double least_arc_error = 0.0005; // mm: $$ shows three digits
+constexpr double most_arc_error = 0.02;    // mm
+constexpr double least_difference = 5e-4;  // of numbers, mm or inches
 
 core::Result<SetupFile> read_text(const std::string& text, const std::string& path) {
     ProgramSettings settings;
@@ -143,9 +144,11 @@ bool is_plain(const std::vector<GrblWord>& words) {
     return true;
 }
 
-/// Whether a line may set an offset: G10, G43.1, G49, G92 and G92.1.
+bool stores_offset(const std::string& text) { return text.find("G10") != std::string::npos; }
+
+/// Whether a line may set an offset without storing it: G43.1, G49, G92 and G92.1.
 bool sets_offsets(const std::string& text) {
-    for (const std::string_view code : {"G10", "G43", "G49", "G92"})
+    for (const std::string_view code : {"G43", "G49", "G92"})
         if (text.find(code) != std::string::npos) return true;
     return false;
 }
@@ -458,7 +461,6 @@ void LineCheck::take_modes(const GrblFacts& facts, const core::Vec3& position) {
         spindle = {file_->setup.spindle_at_start, 1.0};
     step_ = facts.step;
     arc_error_ = facts.arc_tolerance;
-    if (facts.is_reset) called_.reset(); // otherwise Grbl itself forgets it with the next line
 }
 
 void LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
@@ -485,6 +487,11 @@ void LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
     }
     if (!facts.active())
         problem_ = "The control does not say which work offset it uses.";
+    else if (const std::string mode = facts.unknown_mode(); !mode.empty())
+        problem_ =
+            fmt::format("The control is in mode {}, which Grbl 1.1 does not have, so where it "
+                        "moves is not known. Leave this mode.",
+                        mode);
     else if (!facts.stored_line.empty())
         problem_ = fmt::format("Grbl runs the stored line {} at each reset, and nobody checks it: "
                                "clear it ($N0= and $N1=) without the gate.",
@@ -494,8 +501,11 @@ void LineCheck::synchronise(const GrblFacts& facts, const core::Vec3& position,
     if (is_set_up_) tool_was_changed_ = false;
     if (is_set_up_ && !made_) note_failure(build(facts));
     if (facts.is_lost && !says_zero)
-        problem_ =
-            "The controller was restarted, and takes its place for zero. Home it, or touch off.";
+        problem_ = facts.ended_homing
+                       ? "A homing was not finished, so where the machine stands is not known. "
+                         "Home it again, or touch off."
+                       : "The controller was restarted, and takes its place for zero. Home it, or "
+                         "touch off.";
     if (moves_zero && !says_zero)
         problem_ = "The machine was homed after the zero was set, so the zero may be elsewhere.";
     take_modes(facts, position);
@@ -693,8 +703,14 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
     for (const GrblWord& word : *words)
         if (word.letter == 'T' && word.value > last_tool)
             return not_understood(fmt::format("Grbl has no tool {}.", word.value), 38);
-    if (const auto code = refused_machine_code(*words))
+    if (const auto code = refused_machine_code(*words)) {
+        // Grbl does not take the T of this line, but whoever wrote it wants another tool.
+        for (const GrblWord& word : *words)
+            if (word.letter == 'T' && *code == 6.0 && word.value == std::floor(word.value))
+                called_ = control_.modal.selected_tool =
+                    core::ToolNumber{static_cast<int>(word.value)};
         return not_understood(fmt::format("Grbl has no M{}.", *code), 20);
+    }
     const std::string line = is_jog ? "G1G94" + text.substr(3) : text;
     auto program = gcode::program_from_text(line, "the line");
     if (!program) return not_understood(program.error().message, 20);
@@ -709,7 +725,8 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
     LineVerdict verdict;
     verdict.is_plain =
         !is_jog && is_plain(*words) && control_.modal.feed_mode == gcode::FeedMode::per_minute;
-    verdict.asks_anew = sets_offsets(text);
+    verdict.changes_offset = control.modal.offsets != control_.modal.offsets;
+    verdict.asks_anew = stores_offset(text) || (sets_offsets(text) && verdict.changes_offset);
     verdict.answer.may_move = true;
     // Grbl forgets the feed when G94 ends G93.
     const bool ends_inverse_time = control_.modal.feed_mode == gcode::FeedMode::inverse_time
@@ -757,6 +774,10 @@ LineVerdict LineCheck::judge(uint64_t number, const std::string& text, bool is_j
         if (verdict.answer.may_move && !verdict.moves) control_ = std::move(control);
         return verdict;
     }
+    if (verdict.moves && has_arc(events) && arc_error_ < least_arc_error)
+        return not_understood("Grbl's $12 is 0, so it may make an arc as one straight line: set it "
+                              "to 0.002 without the gate.",
+                              9);
     if (verdict.moves && has_arc(events) && arc_error_ > most_arc_error)
         return not_understood(
             fmt::format("Grbl makes arcs with chords up to {:.3g} mm off ($12): set "

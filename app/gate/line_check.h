@@ -25,6 +25,7 @@ struct LineVerdict {
     bool fills_planner = false;      // it gives the planner at least one block
     bool is_plain = false;           // Grbl has no reason to refuse it
     bool stops_at_contact = false;   // a probing motion
+    bool changes_offset = false;     // of the work or the tool
     bool asks_anew = false;          // what is known of the control does not hold behind it
     bool asks_first = false;         // it may be sent if the control stands where it is expected
     std::optional<core::Vec3> end{}; // where the machine then stands, if that is known

@@ -95,8 +95,15 @@ TEST(GrblProtocol, ReadsWhatAControllerSaysOfItself) {
     EXPECT_EQ(facts.stored_line, "$N1=G0X5");
     facts.take("[GC:G1 G59 G17 G20]");
     EXPECT_EQ(facts.active(), 5U);
+    EXPECT_EQ(facts.unknown_mode(), "");
     facts.take("[GC:G1 G17 G20]");
     EXPECT_FALSE(facts.active());
+    for (const char* mode : {"G59.1", "G51", "G7", "G68"}) {
+        facts.take(fmt::format("[GC:G1 G54 G17 G20 {} G90]", mode));
+        EXPECT_EQ(facts.unknown_mode(), mode);
+    }
+    facts.take("$12=0.000");
+    EXPECT_EQ(facts.arc_tolerance, 0.0);
 }
 
 TEST(GrblProtocol, ReadsReportsInInches) {
@@ -394,13 +401,15 @@ TEST_F(CheckedLines, KnowOnlyToolsOfGrbl) {
     EXPECT_TRUE(passes("X2"));
     EXPECT_TRUE(passes("T2"));
     EXPECT_THAT(judge("X3").answer.reason, HasSubstr("calls tool 2"));
-    // Grbl forgets T, and the gate does not, before a reset.
+    // Grbl forgets T at a reset, and the gate does not.
     app::GrblFacts facts = facts_at_zero();
-    check_.synchronise(facts, core::Vec3(2, 0, 40), number_);
-    EXPECT_FALSE(passes("X3"));
     facts.is_reset = true;
     check_.synchronise(facts, core::Vec3(2, 0, 40), number_);
+    EXPECT_FALSE(passes("X3"));
+    EXPECT_TRUE(passes("T1"));
     EXPECT_TRUE(passes("X3"));
+    EXPECT_EQ(judge("T2M6").error, 20);
+    EXPECT_FALSE(passes("X4"));
 }
 
 /// The clearance of many small steps does not add up.
@@ -467,7 +476,7 @@ protected:
     }
     std::string answer_to(const std::string& line) {
         if (line == "$I") return "[OPT:V,3,128]\r\nok\r\n";
-        if (line == "$$") return "$100=250\r\n$101=250\r\n$102=250\r\n$13=0\r\nok\r\n";
+        if (line == "$$") return "$100=" + steps_ + "\r\n$101=250\r\n$102=250\r\n$13=0\r\nok\r\n";
         if (line == "$G") return "[GC:G0 G54 G17 G21 G90 G94 M3 M9 T0 F500 S1000]\r\nok\r\n";
         if (line != "$#") return "ok\r\n";
         std::string text;
@@ -534,11 +543,90 @@ protected:
     std::string to_sender_, at_controller_;
     std::vector<std::string> at_sender_, run_;
     std::deque<std::function<void()>> tasks_;
-    std::string state_ = "Idle", position_ = "0.000,0.000,40.000";
+    std::string steps_ = "250", state_ = "Idle", position_ = "0.000,0.000,40.000";
     int64_t time_ = 0;
     int asked_ = 0; // for the status
     app::Gate gate_{links()};
 };
+
+/// While the gate asks, its own requests are on their way.
+TEST_F(GatedSender, IsNotToldToResetAControllerThatIsAsked) {
+    begin();
+    time_ += 10'000; // nothing was sent for a while
+    gate_.tick(time_);
+    gate_.from_sender("$X\nG0X1\n");
+    for (int i = 0; i < 3; ++i) {
+        play_controller(1);
+        gate_.from_controller("<Idle|MPos:0.000,0.000,40.000|FS:0,0>\r\n");
+    }
+    play_controller();
+    for (const std::string& line : at_sender_)
+        EXPECT_EQ(line.find("does not answer"), std::string::npos) << line;
+    EXPECT_THAT(run_, ElementsAre("G0X1"));
+}
+
+TEST_F(GatedSender, IsGreetedOnceAndNotBehindItsLines) {
+    begin();
+    gate_.sender_came();
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n"); // it has reset itself
+    time_ += 1000;
+    send("\n$G\n");
+    gate_.tick(time_);
+    play_controller();
+    EXPECT_EQ(std::count_if(at_sender_.begin(), at_sender_.end(),
+                            [](const std::string& line) { return line.starts_with("Grbl"); }),
+              1);
+    at_sender_.clear();
+    gate_.sender_came();
+    send("\n");
+    time_ += 1000;
+    gate_.tick(time_);
+    play_controller();
+    for (const std::string& line : at_sender_) EXPECT_FALSE(line.starts_with("Grbl")) << line;
+}
+
+TEST_F(GatedSender, IsToldThatTheStatusIsOfAnOlderGrbl) {
+    begin();
+    gate_.from_controller("<Idle,MPos:0.000,0.000,40.000,WPos:0.000,0.000,0.000>\r\n");
+    gate_.from_controller("<Idle,MPos:0.000,0.000,40.000,WPos:0.000,0.000,0.000>\r\n");
+    ASSERT_EQ(at_sender_.size(), 1U);
+    EXPECT_NE(at_sender_[0].find("needs Grbl 1.1"), std::string::npos);
+}
+
+TEST_F(GatedSender, HoldsTheFeedWithTheBytesOfGrblHal) {
+    begin();
+    gate_.from_sender("\x82");
+    EXPECT_EQ(at_controller_, "\x82");
+    at_controller_.clear();
+    gate_.from_sender("\x19");
+    EXPECT_EQ(at_controller_, "!");
+    ASSERT_EQ(at_sender_.size(), 1U);
+    EXPECT_NE(at_sender_[0].find("as a feed hold"), std::string::npos);
+}
+
+TEST_F(GatedSender, IsWarnedOfLostStepsAfterAnAlarmInMotion) {
+    begin();
+    send("G0X5\n");
+    gate_.from_controller("ALARM:3\r\nGrbl 1.1h ['$' for help]\r\n");
+    at_sender_.clear();
+    send("$X\n");
+    EXPECT_THAT(at_sender_, Contains(HasSubstr("may have lost steps")));
+}
+
+/// An axis of 8 steps a millimetre stands up to half a step from where a line ends.
+TEST_F(GatedSender, AllowsForTheStepsOfAnAxis) {
+    steps_ = "8";
+    begin();
+    send("G0X53\n");
+    position_ = "53.110,0.000,40.000";
+    gate_.from_sender("?");
+    play_controller();
+    EXPECT_THAT(at_sender_, Not(Contains(HasSubstr("does not stand where"))));
+    position_ = "53.120,0.000,40.000";
+    gate_.from_sender("?");
+    play_controller();
+    EXPECT_THAT(at_sender_, Contains(HasSubstr("does not stand where")));
+}
 
 TEST_F(GatedSender, GetsRepliesInOrder) {
     begin();

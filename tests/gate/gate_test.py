@@ -406,6 +406,98 @@ def takes_only_what_was_made_for_cut():
         rig.expect("G0X-60")  # along what was cut now
 
 
+def takes_nothing_for_cut_by_a_wait_that_a_reset_ended():
+    """Grbl answers a dwell and a probing with ok when the button on the board has ended them."""
+    for wait in ("G4P1", "G38.3Z10F100"):
+        with Rig(speed=1, hold_time=0.05, probe=-1000) as rig:
+            rig.simulator.speed = 60
+            rig.expect("G21G90M3S1000")
+            rig.expect("G0X-60Y0Z30")
+            rig.expect("G0Z-2")
+            rig.settle()
+            rig.simulator.speed = 1
+            rig.write(f"G1X40F1200\n{wait}\n")
+            until(lambda: rig.position()[0] > -45, "the cut")
+            rig.write(b"!")
+            until(lambda: rig.simulator.state == "Hold", "the hold")
+            begin = len(rig.read())
+            rig.simulator.reset_button()
+            until(lambda: any(line.startswith("Grbl") for line in rig.read()[begin:]), "the greeting")
+            rig.expect("$X")
+            rig.expect("G21G90G0Z5")
+            rig.expect("G0X-60")
+            rig.expect("G0Z-2")
+            rig.refused("G0X30", "stock")
+
+
+def trusts_no_homing_that_was_not_finished():
+    """Grbl counts the steps of each phase from 0, answers with ok, and unlocks."""
+    for end in (b"\x18", b"\x84"):
+        with Rig(settings={22: 1, 25: 600, 26: 1}) as rig:
+            rig.expect("$H")
+            rig.say("$FEELER=ZERO")
+            rig.expect("G21G90G0Z40")
+            rig.expect("G0X0Y0")
+            rig.settle()
+            rig.simulator.speed = 1
+            rig.write("$H\n")
+            until(lambda: near(rig.position()[2:], (59,)), "the second phase of homing")
+            rig.write(end)
+            until(lambda: any(line.startswith("ALARM") for line in rig.read()), "the alarm")
+            rig.simulator.speed = 60
+            rig.settle()
+            assert any(rig.simulator.drift)
+            rig.expect("$X")
+            rig.refused("G21G90G0X70Y0", "homing was not finished", "$FEELER=ZERO")
+            rig.expect("$X")
+            rig.expect("$H")
+            rig.say("$FEELER=ZERO")
+            rig.expect("G21G90G0X10Y0")
+
+
+def asks_for_a_finer_arc_tolerance_than_none():
+    with Rig(settings={12: 0}) as rig:
+        rig.expect("G21G90G0X0Y0Z35")
+        rig.refused("G2X10Y0R-20F1000", "$12 is 0")
+        rig.expect("$X")
+        rig.expect("G1X10F1000")
+
+
+def compares_reports_of_the_work_too():
+    """With $10=0 the controller reports where it is in the work."""
+    for settings in ({10: 0}, {10: 1}):
+        with Rig(settings=settings) as rig:
+            rig.expect("G21G90G0X59Y0Z40")
+            rig.expect("G0X0")
+            rig.settle()
+            with rig.simulator.lock:
+                x, y, z = rig.simulator.position
+                rig.simulator.position = (x, y, z - 25)
+                rig.simulator._sync_positions()
+            for _ in range(5):
+                rig.write(b"?")
+                time.sleep(0.3)  # clock: Idle counts when it has lasted a while
+            until(lambda: any("does not stand where" in line for line in rig.read()), "the message")
+            rig.refused("G0X59", "clamp")
+
+
+def remembers_a_tool_that_was_called():
+    with Rig() as rig:
+        rig.expect("G21G90G0X0Y0Z35")
+        rig.refused("T2M6", "M6", error=20)
+        rig.refused("G0X5", "tool 2")
+    with Rig() as rig:
+        rig.expect("G21G90G0X0Y0Z35")
+        rig.expect("T2")
+        rig.refused("G0X5", "tool 2")
+        rig.reset()
+        rig.expect("$X")
+        rig.refused("G21G90G0X5", "tool 2")
+        rig.expect("$X")
+        rig.expect("T1")
+        rig.expect("G0X5")
+
+
 def gates_jogs():
     with Rig() as rig:
         rig.expect("$J=G90G21X0Y0Z35F3000")
@@ -672,14 +764,18 @@ def works_in_check_mode():
         rig.expect("G21G90G0X0Y0Z35")
         rig.settle()
         rig.expect("$C")
+        rig.expect("G17G21G40G49G80G90")  # changes nothing
+        rig.expect("$X")
         rig.expect("M3S1000")
         rig.expect("G0X-60Y0")
         rig.expect("G0Z-5")
         rig.expect("G1X0F500")
         rig.expect("G0Z5")
         rig.refused("G0X70", "clamp")
+        count = len(rig.replies())
         rig.write("$C\n")
         until(lambda: any(line.startswith("Grbl") for line in rig.read()[3:]), "the greeting")
+        assert rig.replies()[count:] == ["ok"], rig.lines
         rig.settle()
         assert near(rig.position(), (0, 0, 35)), rig.position()
         rig.expect("G90G0X-20Y0")

@@ -239,6 +239,7 @@ class GrblSimulator:
         for name, values in (offsets or {}).items():
             self.places[name] = [float(value) for value in values]
         self.position = self._on_steps(position)
+        self.drift = (0.0, 0.0, 0.0)  # where the machine really is, from there
         self._point("start")
 
     # ---- In-process interface -------------------------------------------------------------
@@ -1115,6 +1116,7 @@ class GrblSimulator:
                     return
         self._realtime()
         if not self.abort:
+            self.drift = (0.0, 0.0, 0.0)
             self._sync_positions()
 
     def _homing_move(self, target):
@@ -1129,6 +1131,11 @@ class GrblSimulator:
             self.position = target
             self._point("homing", self.line)
             return True
+        # Grbl counts the steps of each phase from 0.
+        moves = [a != b for a, b in zip(start, target)]
+        counted = tuple(p - s if m else p for p, s, m in zip(self.position, start, moves))
+        self.drift = tuple(s if m else 0.0 for s, m in zip(start, moves))
+        self.position = self._on_steps(counted)
         self._point("homing", self.line)
         self.alarm = 7 if DOOR_OPEN in self.requests else 6
         self._mc_reset()
