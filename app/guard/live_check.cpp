@@ -8,16 +8,13 @@
 #include <fmt/format.h>
 
 #include "core/base/math.h"
+#include "gcode/contour/flat_path.h"
 #include "gcode/lower/lowering.h"
 
 namespace app {
 namespace {
 
 constexpr double same_place = 1e-6; // mm or degrees
-
-// LinuxCNC makes a full circle if the ends of an arc are nearer than 1e-8 of its unit. Between
-// these gaps that is not certain, as lengths were converted; mm.
-constexpr double least_gap = 0.5e-8, certain_gap = 5e-7;
 
 bool is_near(const core::AxisValues& a, const core::AxisValues& b) {
     for (size_t i = 0; i < core::axis_count; ++i)
@@ -64,7 +61,7 @@ double turn_about(const core::Vec3& from, const core::Vec3& to, const core::Vec3
     const int u = (normal + 1) % 3, v = (normal + 2) % 3;
     const core::Vec3 a = from - centre, b = to - centre;
     const double whole = 2.0 * std::numbers::pi;
-    if (gap_in_plane(from, to, normal) < least_gap) return whole;
+    if (gap_in_plane(from, to, normal) < gcode::same_end) return whole;
     const double angle = core::atan2(a[u] * b[v] - a[v] * b[u], a[u] * b[u] + a[v] * b[v]);
     return angle > 0.0 ? angle : angle + whole;
 }
@@ -431,7 +428,7 @@ std::string LiveCheck::objection(const LiveMotion& motion) const {
         const double gap =
             gap_in_plane(point_of(axis_values(motion.from)), point_of(axis_values(motion.to)),
                          *main_axis(vector_of(motion.normal)));
-        if (gap > least_gap && gap < certain_gap)
+        if (gap > gcode::same_end && gap < gcode::other_end)
             return fmt::format("Its arc ends {:.2g} mm from its start, so it may be a full circle "
                                "or none.",
                                gap);

@@ -102,11 +102,13 @@ bool has_length(const CornerSide& side);
 /// The change of direction at a corner, from 0 (straight on) to pi (reversal).
 double bend_between(const CornerSide& first, const CornerSide& second);
 
+/// Whether an arc is a full circle follows from the distance of its ends: LinuxCNC 2.9 takes 1e-8
+/// of its unit (CART_FUZZ), other controls compare them. Between these two distances that is not
+/// certain, as lengths are converted and rounded; mm.
+inline constexpr double same_end = 0.5e-8, other_end = 5e-7;
+
 /// The angle of an arc, radians; positive if counter-clockwise as seen against the normal of the
 /// plane.
-///
-/// An end within `full_circle_gap` of the start is a full turn (LinuxCNC 2.9: CART_FUZZ).
-inline constexpr double full_circle_gap = 1e-8; // mm
 inline double arc_angle(const double (&start)[2], const double (&end)[2], const double (&centre)[2],
                         int turns) {
     constexpr double full_turn = 2.0 * std::numbers::pi;
@@ -115,7 +117,7 @@ inline double arc_angle(const double (&start)[2], const double (&end)[2], const 
     const double sign = turns < 0 ? -1.0 : 1.0;
     double angle = sign * (end_angle - start_angle);
     if (angle < 0.0) angle += full_turn;
-    if (core::hypot(end[0] - start[0], end[1] - start[1]) < full_circle_gap) angle = full_turn;
+    if (core::hypot(end[0] - start[0], end[1] - start[1]) < same_end) angle = full_turn;
     return sign * (angle + full_turn * (std::abs(turns) - 1));
 }
 

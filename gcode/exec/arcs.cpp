@@ -204,9 +204,9 @@ core::Result<void> check_ends(const Execution& execution, const SeenArc& arc,
     constexpr double least_angle = 1e-6; // radians
     const double gap = core::hypot(arc.end[0] - arc.start[0], arc.end[1] - arc.start[1]);
     const double radius = core::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
-    if (gap < 0.5 * full_circle_gap) return {};
+    if (gap < same_end) return {};
     const bool is_grbl = execution.dialect.id == DialectId::grbl;
-    if (gap > 50.0 * full_circle_gap && !(is_grbl && gap < least_angle * radius)) return {};
+    if (gap > other_end && !(is_grbl && gap < least_angle * radius)) return {};
     return core::fail(
         ErrorCode::unsupported,
         fmt::format("{}: the arc ends {:.3g} mm from its start, so the control may "

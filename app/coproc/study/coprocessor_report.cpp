@@ -250,9 +250,9 @@ std::string coprocessor_text(const CoprocessorResult& result) {
         fmt::format("{} blocks, {} queries, {} nodes, {} pairs, {} cycles",
                     result.run.blocks.size(), totals[Counter::queries], totals[Counter::nodes],
                     totals[Counter::pair_tests], totals[Counter::cycles]));
-    add("control", fmt::format("makes {} lines for the coprocessor in {}: {:.3g} % of the time",
-                               f.lines_made, time_text(result.timing.making),
-                               100.0 * f.control_share));
+    add("control",
+        fmt::format("makes {} lines for the coprocessor in {}: {:.3g} % of the time", f.lines_made,
+                    time_text(result.timing.making), 100.0 * f.control_share));
     add("latency", fmt::format("median {}, 99th percentile {}, maximum {}", time_text(f.p50),
                                time_text(f.p99), time_text(f.longest)));
     add("rate", fmt::format("{:.0f} queries per second while busy; busy {:.3g} % of the time",
