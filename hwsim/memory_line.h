@@ -48,8 +48,8 @@ struct Box {
 constexpr Box everywhere{{least_coordinate, least_coordinate, least_coordinate},
                          {greatest_coordinate, greatest_coordinate, greatest_coordinate}};
 
-/// What the nodes of models hold: upright boxes, or the spheres of Uddin & Yamazaki (2010). A device
-/// has one kind; the circuit in rtl/ has boxes.
+/// What the nodes of models hold: upright boxes, or the spheres of Uddin & Yamazaki (2010). A
+/// device has one kind; the circuit in rtl/ has boxes.
 enum class Volumes : uint8_t { boxes, spheres };
 
 constexpr const char* name_of(Volumes volumes) {

@@ -118,8 +118,8 @@ struct DeviceReport {
 /// The sizes and times of an emulated device.
 struct DeviceConfig {
     uint32_t clock_mhz = 100;
-    uint32_t elements = 8;           // processing elements, at most 64
-    uint32_t threads = 4;            // of each, at most 16
+    uint32_t elements = 8; // processing elements, at most 64
+    uint32_t threads = 4;  // of each, at most 16
     Volumes volumes = Volumes::boxes;
     uint32_t stack_depth = 64;       // waiting pairs per thread, at most `most_stack`
     uint32_t node_cache_lines = 256; // of each element; powers of two up to `most_cache_lines`

@@ -13,7 +13,7 @@ struct SearchPair {
     Reference tool, work;
     Volume tool_volume; // before the offset is added
     Box work_box;
-    int32_t work_radius = 0; // of a sphere
+    int32_t work_radius = 0;      // of a sphere
     uint16_t first = 0, last = 0; // samples
     uint64_t squared = 0;         // lower bound of the squared distance of their records
 
@@ -48,9 +48,9 @@ struct SplitPairs {
 SplitPairs halves_of_node(const SearchPair& pair, Division division, const Node& node);
 SplitPairs split_at_middle(const SearchPair& pair);
 
-/// The test of spheres, as the box test: root(d2) - r, where d is the distance between the centre of
-/// the work and the box around the centre of the tool on its way, r the sum of both radii, and the
-/// root is rounded down.
+/// The test of spheres, as the box test: root(d2) - r, where d is the distance between the centre
+/// of the work and the box around the centre of the tool on its way, r the sum of both radii, and
+/// the root is rounded down.
 std::optional<uint64_t> squared_gap_of_spheres(const Volume& tool, const FixedVec& from,
                                                const FixedVec& to, const Volume& work);
 
