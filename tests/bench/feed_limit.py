@@ -125,9 +125,18 @@ def host_share(report):
     return min(1.0, lines / max(sum(block["interval"] for block in report["blocks"]), 1))
 
 
+def read_at(report, block):
+    """When the control reads a block: when the machine enters the one that is the look-ahead before it."""
+    first = report["blocks"][0]["block"]
+    before = block["block"] - first - report["config"]["control"]["look_ahead"]
+    return 0.0 if before < 0 else report["blocks"][before]["entered"] or 0.0
+
+
 def reason(report, block):
     """The cause of a late block."""
     if block["asked"] >= block["due"]:
+        if read_at(report, block) < block["due"]:
+            return "control: it makes lines for the device"
         return "look-ahead: the way to brake is longer"
     at_once = sum(1 for b in report["blocks"] if b["due"] == block["due"])
     if at_once > 1:

@@ -131,10 +131,14 @@ class Reports(unittest.TestCase):
         self.assertAlmostEqual(feed_limit.host_share(report(blocks, host_lines=100)), 400 / cycles)
         self.assertEqual(feed_limit.host_share(report(blocks, host_lines=cycles)), 1.0)
 
-    def test_the_reason_is_the_look_ahead_a_crowd_the_block_or_those_before_it(self):
+    def test_the_reason_is_the_look_ahead_the_control_a_crowd_the_block_or_those_before_it(self):
         late = {"slack": -0.5, "due": 0.5, "permitted": 1.0}
-        whole = report([])
-        self.assertIn("look-ahead", feed_limit.reason(whole, block(1, **late, asked=0.5)))
+        # The control reads block 3 when the machine enters block 1.
+        whole = report([block(0), block(1, entered=0.6), block(2), block(3)])
+        self.assertIn("look-ahead", feed_limit.reason(whole, block(3, **late, asked=0.7)))
+        whole["blocks"][1]["entered"] = 0.1
+        self.assertIn("control", feed_limit.reason(whole, block(3, **late, asked=0.7)))
+        self.assertIn("control", feed_limit.reason(whole, block(1, **late, asked=0.5)))
         self.assertIn("itself", feed_limit.reason(whole, block(1, **late, asked=0.1, cycles=60e6)))
         self.assertIn("before it", feed_limit.reason(whole, block(1, **late, asked=0.1, cycles=1e6)))
         crowd = [block(i, **late, asked=0.1) for i in range(3)] + [block(3)]
