@@ -226,8 +226,8 @@ core::Result<RtlDevice> RtlDevice::with(const DeviceConfig& config) {
     if (has_sizes(good, small)) circuit = std::make_unique<CircuitOf<SmallCoprocessor>>(good);
     if (!circuit)
         return core::fail(core::ErrorCode::invalid_value,
-                          fmt::format("the circuit has {} elements of {} threads, and the other "
-                                      "sizes that are usual",
+                          fmt::format("the circuit has {} elements of {} threads, boxes in its "
+                                      "nodes, and the other sizes that are usual",
                                       usual.elements, usual.threads));
     return RtlDevice(std::make_unique<Board>(good, std::move(circuit)));
 }
