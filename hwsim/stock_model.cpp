@@ -93,6 +93,12 @@ int64_t squared_reach(const Record& r, Side side, const FixedVec& from) {
     return level * level + up * up;
 }
 
+Box box_round(std::span<const Record> records) {
+    Box box = box_of(records[0]);
+    for (const Record& record : records) box.extend(box_of(record));
+    return box;
+}
+
 FixedVec centre_of(const Box& box) {
     FixedVec centre{};
     for (size_t axis = 0; axis < 3; ++axis)
@@ -121,12 +127,12 @@ core::Result<uint32_t> ModelWriter::add(const Node& node) {
 core::Result<Branch> ModelWriter::add_leaf(std::span<const Record> records) {
     const auto count = static_cast<uint32_t>(records.size());
     FEELER_TRY(const LineRun run, taken(*this, leaf_lines(count)));
-    Branch leaf{Reference::leaf(run.first, count), volume_of(records[0], side), box_of(records[0])};
-    for (const Record& record : records) {
-        leaf.volume.extend(volume_of(record, side));
-        leaf.box.extend(box_of(record));
+    Branch leaf{Reference::leaf(run.first, count), volume_of(records[0], side), {}};
+    for (const Record& record : records) leaf.volume.extend(volume_of(record, side));
+    if (volumes == Volumes::spheres) {
+        leaf.box = box_round(records);
+        leaf.volume = sphere_round(records, side);
     }
-    if (volumes == Volumes::spheres) leaf.volume = sphere_round(records, side);
     for (uint32_t i = 0; i < run.count; ++i) {
         Records four{};
         const auto part = records.subspan(size_t{i} * records_per_line);
@@ -137,9 +143,7 @@ core::Result<Branch> ModelWriter::add_leaf(std::span<const Record> records) {
 }
 
 Volume sphere_round(std::span<const Record> records, Side side) {
-    Box box = box_of(records[0]);
-    for (const Record& record : records) box.extend(box_of(record));
-    const FixedVec centre = centre_of(box);
+    const FixedVec centre = centre_of(box_round(records));
     int64_t squared = 0;
     for (const Record& record : records)
         squared = std::max(squared, squared_reach(record, side, centre));
@@ -165,11 +169,12 @@ core::Result<Branch> add_above(ModelWriter& writer, const Branch& a, const Branc
     FEELER_TRY(const uint32_t line,
                writer.add(Node{{a.volume, b.volume}, {a.reference, b.reference}}));
     Branch above{Reference::node(line), a.volume, a.box};
-    above.box.extend(b.box);
-    if (writer.volumes == Volumes::spheres)
+    if (writer.volumes == Volumes::spheres) {
+        above.box.extend(b.box);
         above.volume = sphere_above(above.box, a.volume, b.volume);
-    else
+    } else {
         above.volume.extend(b.volume);
+    }
     return above;
 }
 

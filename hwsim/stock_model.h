@@ -15,7 +15,7 @@ namespace hwsim {
 struct Branch {
     Reference reference;
     Volume volume;
-    Box box; // around its records
+    Box box; // around its records; of spheres only
 
     bool operator==(const Branch&) const = default;
 };
