@@ -613,6 +613,17 @@ TEST_F(GatedSender, IsWarnedOfLostStepsAfterAnAlarmInMotion) {
     EXPECT_THAT(at_sender_, Contains(HasSubstr("may have lost steps")));
 }
 
+TEST_F(GatedSender, MustHomeAgainIfTheControllerIsResetMeanwhile) {
+    begin();
+    gate_.from_sender("$H\n");
+    check_all();
+    gate_.from_controller("Grbl 1.1h ['$' for help]\r\n"); // and no alarm
+    at_controller_.clear();
+    send("$X\nG0X1\n");
+    EXPECT_THAT(at_sender_, Contains(HasSubstr("homing was not finished")));
+    EXPECT_TRUE(run_.empty());
+}
+
 /// An axis of 8 steps a millimetre stands up to half a step from where a line ends.
 TEST_F(GatedSender, AllowsForTheStepsOfAnAxis) {
     steps_ = "8";
