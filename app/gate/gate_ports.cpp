@@ -77,6 +77,8 @@ private:
 
     void end(std::error_code error) {
         on_bytes = {};
+        std::error_code ignored;
+        port_.close(ignored); // what is not written yet is not for the next one
         if (const auto tell = std::exchange(on_end, {})) tell(error.message());
     }
 
@@ -341,12 +343,12 @@ void GateServer::look_at_terminal() {
     take_sender(stream_of(std::move(port)));
 }
 
-/// Drops what the last sender has not read.
+/// Drops what the last sender has not read. What the next one has written already stays.
 void GateServer::empty_terminal() {
     is_terminal_used_ = false;
     const int other_end = ::open(terminal_name_.c_str(), O_RDWR | O_NOCTTY);
     if (other_end < 0) return;
-    ::tcflush(other_end, TCIOFLUSH);
+    ::tcflush(other_end, TCIFLUSH);
     ::close(other_end);
 }
 

@@ -7,12 +7,14 @@ The controller (grbl_simulator.py) records the path that its tool really makes. 
 path to bodies are computed here, without Feeler.
 """
 import contextlib
+import fcntl
 import json
 import math
 import os
 import pathlib
 import random
 import re
+import select
 import signal
 import socket
 import subprocess
@@ -871,6 +873,15 @@ def leaves_links_of_others_alone():
         assert os.readlink(link) == "/dev/null"
 
 
+def read_terminal(end, is_enough):
+    """What comes from a terminal until it is enough."""
+    text = b""
+    while not is_enough(text):
+        assert select.select([end], [], [], 20 * PATIENCE)[0], text
+        text += os.read(end, 4096)
+    return text
+
+
 def serves_a_terminal():
     with tempfile.TemporaryDirectory() as folder, Rig(arguments=()) as rig:
         rig.gate.kill()
@@ -885,9 +896,7 @@ def serves_a_terminal():
                 end = os.open(link, os.O_RDWR | os.O_NOCTTY)
                 # As from a sender that sets nothing; Grbl answers each carriage return and each line feed.
                 os.write(end, b"\r\n\r\nG21G90G0X0Y0Z35\r\nG0X70Z5\r\n$X\r\n")
-                text = b""
-                while text.count(b"ok\r\n") < 2 or b"error:9" not in text:
-                    text += os.read(end, 4096)
+                text = read_terminal(end, lambda text: text.count(b"ok\r\n") >= 2 and b"error:9" in text)
                 time.sleep(0.5)  # clock: lets more come
                 os.set_blocking(end, False)
                 with contextlib.suppress(BlockingIOError):
@@ -899,6 +908,45 @@ def serves_a_terminal():
             gate.send_signal(signal.SIGINT)
             assert gate.wait(20) == 1
         assert not os.path.lexists(link)
+
+
+def keeps_what_the_next_sender_writes():
+    """Into a terminal, before the gate has done with the last sender."""
+    with tempfile.TemporaryDirectory() as folder, Rig(arguments=()) as rig:
+        rig.gate.kill()
+        rig.gate.wait()
+        link = os.path.join(folder, "grbl")
+        port = rig.simulator._listener.getsockname()[1]
+        said, says = os.pipe()
+        fcntl.fcntl(says, fcntl.F_SETPIPE_SZ, 4096)
+        filler = os.open(f"/proc/self/fd/{says}", os.O_WRONLY | os.O_NONBLOCK)
+        gate = subprocess.Popen([FEELER, "gate", "--setup", rig.setup, "--controller",
+                                 f"127.0.0.1:{port}", "--zero-is-set", "--pty", link],
+                                stdout=says, stderr=says)
+        try:
+            until(lambda: os.path.exists(link), "the terminal")
+            end = os.open(link, os.O_RDWR | os.O_NOCTTY)
+            for _ in range(40):
+                os.write(end, b"$FEELER\n")
+                text = read_terminal(end, lambda text: b"ok\r\n" in text)
+                assert b"lines passed" in text, text
+                # The gate stops where it says that the sender is gone.
+                with contextlib.suppress(BlockingIOError):
+                    while os.write(filler, b" "):
+                        pass
+                os.close(end)
+                time.sleep(0.05)  # clock: lets it come so far
+                end = os.open(link, os.O_RDWR | os.O_NOCTTY)
+                os.write(end, b"$G\n")
+                os.read(said, 4096)
+                text = read_terminal(end, lambda text: b"ok\r\n" in text)
+                assert b"[GC:" in text and b"lines passed" not in text, text
+            os.close(end)
+        finally:
+            gate.send_signal(signal.SIGINT)
+            assert gate.wait(20) == 0
+            for each in (said, says, filler):
+                os.close(each)
 
 
 def main():
