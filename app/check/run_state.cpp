@@ -42,6 +42,7 @@ void add(StateDigest& digest, const core::CutModel& stock) {
 void add(StateDigest& digest, const core::CornerLimit& limit) {
     digest.add(limit.deviation);
     digest.add(limit.distance);
+    digest.add(limit.blended);
 }
 
 void add(StateDigest& digest, const core::RoundedCorners& corners) {
@@ -53,6 +54,8 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     digest.add(uint64_t(corners.has_cut));
     add(digest, corners.rapids);
     add(digest, corners.mixed);
+    add(digest, corners.arcs);
+    digest.add(corners.last.by);
     digest.add(corners.last.kind ? uint64_t(*corners.last.kind) + 1 : 0);
     for (const core::Leg& leg : corners.last.legs)
         for (const core::AxisValues& position : leg.positions)

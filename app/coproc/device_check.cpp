@@ -300,7 +300,7 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     at.follows =
         off_by_axes + at.corners.by_axes_of_cuts == 0.0
         && follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
-    at.corners.last.kind = motion.kind;
+    at.corners.end(motion.kind, motion.arc.has_value());
     for (const core::Leg& leg : path.legs) {
         if (auto done = update_models(at); !done) return done;
         if (pushes_centre(leg, cutting, at))

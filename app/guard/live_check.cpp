@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/base/math.h"
+#include "core/motion/corner.h"
 #include "gcode/contour/flat_path.h"
 #include "gcode/lower/lowering.h"
 
@@ -124,6 +125,8 @@ core::PathModeChange path_mode_of(const LiveMotion& motion) {
                     : motion.blending == FEELER_EXACT_PATH ? core::Blending::exact_path
                                                            : core::Blending::continuous;
     if (mode.blending != core::Blending::continuous) return mode;
+    // The deviation at corners of others is a path error, and feeler_tp blends none of arcs.
+    mode.blends = !moves_others(motion);
     // Without a tolerance, which feeds always have, as far as speeds demand.
     mode.tolerance = motion.tolerance;
     if (motion.tolerance > 0.0)
@@ -148,28 +151,6 @@ core::SpindleChange spindle_of(const LiveMotion& motion, bool speed_by_hand) {
                                                : core::SpindleDirection::stopped;
     if (motion.turns_on != 0) spindle.speed = std::max(motion.speed, speed_by_hand ? 1.0 : 0.0);
     return spindle;
-}
-
-/// The greatest deviation of a corner between straight motions of X, Y and Z, as a multiple of the
-/// tolerance. The first one begins to give way 2 T / cos(t) before the corner, where t is half the
-/// angle between them, and brakes with a; the next accelerates with k a, so at most
-/// 4 k / (1 + sqrt k)^2 of T is left of the corner. LinuxCNC halves the accelerations of motions
-/// that are blended, sometimes only that of the first, and the next one may have any direction: k
-/// is at most twice the greatest acceleration of all directions over that of the first motion.
-///
-/// Source: LinuxCNC 2.9, tp.c, tpComputeBlendVelocity; measured in tests/guard.
-double corner_factor(const LiveMotion& motion, const core::Machine& machine) {
-    constexpr double most = 4.0, cycles = 1.05; // how far a servo cycle goes
-    double square = 0.0;
-    for (size_t i = 0; i < 3; ++i) {
-        const core::MachineAxis& axis = machine.axes[i];
-        if (!axis.present) continue;
-        if (!axis.acceleration) return cycles * most;
-        square += *axis.acceleration * *axis.acceleration;
-    }
-    if (!(motion.acceleration > 0.0)) return cycles * most;
-    const double root = std::sqrt(2.0 * std::sqrt(square) / motion.acceleration);
-    return cycles * most * (root / (1.0 + root)) * (root / (1.0 + root));
 }
 
 /// What is wrong with LinuxCNC's limits for a straight motion that is blended: how far its corners
@@ -459,14 +440,9 @@ std::string LiveCheck::begin(const LiveMotion& motion) {
 /// The motion with how far the corner at its start may be rounded: by the mode of the one before,
 /// if that is wider.
 LiveMotion LiveCheck::with_corner(LiveMotion motion) const {
-    const auto widen = [&](LiveMotion& at) {
-        if (!moves_others(at)) at.tolerance *= corner_factor(at, judge_.setup().machine);
-    };
-    widen(motion);
     const bool is_rapid = motion.purpose == FEELER_RAPID;
     if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0) return motion;
-    LiveMotion before = waiting_.back().queued;
-    widen(before);
+    const LiveMotion& before = waiting_.back().queued;
     if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID)
         || moves_others(before) != moves_others(motion)) // feeler_tp lets it begin at rest
         return motion;
@@ -518,9 +494,11 @@ LiveAnswer LiveCheck::judge_retreat(const LiveMotion& queued) {
     }
     // Bounds of a motion include how far the control may round its corners; those at rest do not.
     constexpr double most_rounding = 0.1; // mm
+    const double off = moves_others(motion)
+                           ? motion.tolerance
+                           : motion.tolerance * core::most_blend_deviation(judge_.setup().machine);
     const double rounding =
-        std::min(motion.blending == FEELER_BLENDED ? motion.tolerance : 0.0, most_rounding)
-        + motion.path_error;
+        std::min(motion.blending == FEELER_BLENDED ? off : 0.0, most_rounding) + motion.path_error;
     LiveAnswer answer = judge_.judge_retreat(events, rounding, *ahead_);
     if (answer.may_move) return permitted(queued, motion);
     if (answer.cure.empty())

@@ -78,11 +78,11 @@ double corner_deviation(const core::RoundedCorners& corners, const core::Motion&
 }
 
 /// The part of a path in which a control may round the corner at its end, or at its start: at most
-/// half, unless a distance is stated.
+/// half, unless a distance is stated, or at the start after a blend.
 std::vector<core::Leg> near_corner(const std::vector<core::Leg>& legs,
                                    const core::CornerLimit& limit, bool at_end) {
     const bool is_line = legs.size() == 1 && legs[0].straight && legs[0].positions.size() == 2;
-    if (!is_line || limit.distance < core::infinity) return legs;
+    if (!is_line || limit.distance < core::infinity || (limit.blends() && !at_end)) return legs;
     return {at_end ? core::stretch(legs[0], 0.5, 1.0) : core::stretch(legs[0], 0.0, 0.5)};
 }
 
@@ -412,10 +412,7 @@ std::optional<LimitingPair> Enclosure::judge_hull(Run& run, size_t event,
     const bool is_feed = motion.kind != core::MotionKind::rapid;
     const double off_path =
         std::max(is_feed ? corners.of_feed(false) : 0.0, corner_deviation(corners, motion, {*leg}));
-    corners.last = {}; // the whole motion counts as rounded
-    corners.last.kind = motion.kind;
-    corners.last.rapids = corners.rapids;
-    corners.last.mixed = corners.mixed;
+    corners.end(motion.kind, false); // the whole motion counts as rounded
     return judge_legs(run, event, {*leg}, off_path, false);
 }
 
@@ -463,7 +460,10 @@ std::optional<LimitingPair> Enclosure::judge_corner(Run& run, size_t event,
     if (exact) run.state.corners.last = {};
     const bool rapid = motion.kind == core::MotionKind::rapid,
                was_rapid = *last.kind == core::MotionKind::rapid;
-    if (!rapid && !was_rapid) return std::nullopt; // the whole feed counts as rounded
+    if (!rapid && !was_rapid) { // the whole feed counts as rounded
+        if (!last.arcs.rounds() || !(motion.arc || last.is_arc)) return std::nullopt;
+        return LimitingPair{.event = event, .tool = run.state.tool, .pair = {}, .missing = {}};
+    }
     const core::CornerLimit& limit = rapid && was_rapid ? last.rapids : last.mixed;
     if (!limit.rounds()) return std::nullopt;
     const std::vector<core::Leg> legs =

@@ -65,7 +65,8 @@ bool same_change(const core::Event& a, const core::Event& b) {
                && mode->joining == other.joining && mode->distance == other.distance
                && mode->rapid_tolerance == other.rapid_tolerance
                && mode->rapid_distance == other.rapid_distance
-               && mode->between_kinds == other.between_kinds;
+               && mode->between_kinds == other.between_kinds && mode->blends == other.blends
+               && mode->blends_at_arcs == other.blends_at_arcs;
     }
     if (const auto* fixture = std::get_if<core::FixtureChange>(&a)) {
         const auto& other = std::get<core::FixtureChange>(b);

@@ -107,7 +107,21 @@ double rounding_reach(double deviation, double turn) {
 
 namespace {
 
-/// The greatest speed on straight legs, mm/s.
+// LinuxCNC 2.9, src/emc/tp: tc.c, tp.c and blendmath.c.
+constexpr double cycle = 1.05;          // how far the planner moves in a servo cycle
+constexpr double least_share = 0.45;    // of the acceleration for a motion that is blended
+constexpr double share_along_arc = 0.5; // of that, along an arc
+constexpr double least_angle = 1e-3;    // radians: below this, the tolerance limits nothing
+constexpr double feed_override = 1.2;
+
+/// A motion at its end at a corner.
+struct CornerSide {
+    AxisValues heading{}; // of the linear axes; length 1
+    double radius = infinity;
+    std::optional<size_t> plane_normal = {}; // of an arc
+};
+
+/// The greatest speed on legs, mm/s.
 double speed_on(std::span<const Leg> legs) {
     double speed = 0.0;
     for (const Leg& leg : legs)
@@ -115,25 +129,155 @@ double speed_on(std::span<const Leg> legs) {
     return speed;
 }
 
+/// The direction of an arc at a fraction of its angle, and its least radius.
+void set_heading(CornerSide& side, const Motion& motion, double fraction) {
+    const ArcPath& arc = *motion.arc;
+    const auto n = static_cast<size_t>(arc.normal), u = (n + 1) % 3, v = (n + 2) % 3;
+    const auto part = [&](const AxisPosition& at, size_t axis) {
+        return *at[axis] - arc.centre[static_cast<int>(axis)];
+    };
+    const double before = core::hypot(part(motion.from, u), part(motion.from, v)),
+                 after = core::hypot(part(motion.to, u), part(motion.to, v));
+    side.radius = std::min(before, after);
+    side.plane_normal = n;
+    const double turned = fraction * arc.angle;
+    const double cosine = core::cos(turned), sine = core::sin(turned);
+    const double out_u = (cosine * part(motion.from, u) - sine * part(motion.from, v)) / before,
+                 out_v = (sine * part(motion.from, u) + cosine * part(motion.from, v)) / before;
+    const double around = arc.angle * (before + fraction * (after - before));
+    side.heading[u] = -around * out_v + (after - before) * out_u;
+    side.heading[v] = around * out_u + (after - before) * out_v;
+    side.heading[n] = *motion.to[n] - *motion.from[n];
+}
+
+/// Empty if the direction there is not known.
+std::optional<CornerSide> side_of(std::span<const Leg> legs, bool at_end) {
+    if (legs.empty()) return std::nullopt;
+    const Leg& leg = at_end ? legs.back() : legs.front();
+    if (!has_ends(leg)) return std::nullopt;
+    CornerSide side;
+    if (leg.arc.motion)
+        set_heading(side, *leg.arc.motion, at_end ? leg.arc.last : leg.arc.first);
+    else
+        side.heading = travel_of(leg);
+    const double size = std::sqrt(dot(side.heading, side.heading));
+    if (!(size > 0.0)) return std::nullopt;
+    for (double& part : side.heading) part /= size;
+    return side;
+}
+
+double turn_between(const CornerSide& before, const CornerSide& after) {
+    return core::acos(std::clamp(dot(before.heading, after.heading), -1.0, 1.0));
+}
+
+/// The least and the greatest acceleration along a motion beside a corner, mm/s2, of a machine that
+/// states those of its axes. While a motion is blended, LinuxCNC takes half of it, and less beside
+/// smooth corners.
+struct Accelerations {
+    double least = infinity, most = infinity;
+};
+
+Accelerations accelerations_of(const CornerSide& side, const Machine& machine) {
+    Accelerations along;
+    if (side.plane_normal) { // those of the axes, whatever the direction
+        along.most = 0.0;
+        for (size_t i = 0; i < 3; ++i) {
+            if (i == *side.plane_normal && side.heading[i] == 0.0) continue;
+            const double axis = machine.axes[i].acceleration.value_or(infinity);
+            along.least = std::min(along.least, axis);
+            along.most = std::max(along.most, axis);
+        }
+        return {share_along_arc * least_share * along.least, along.most};
+    }
+    for (size_t i = 0; i < axis_count; ++i)
+        if (side.heading[i] != 0.0 && machine.axes[i].acceleration)
+            along.most =
+                std::min(along.most, *machine.axes[i].acceleration / std::abs(side.heading[i]));
+    return {least_share * along.most, along.most};
+}
+
+/// The farthest from a corner between straight motions at which their blend is, as a multiple of
+/// where it begins to brake, both times the sine of half the angle by which the path turns. It
+/// brakes with a along the first motion and accelerates with `ratio` times a along the second one.
+double blend_share(double ratio) {
+    if (ratio == infinity) return 2.0;
+    const double root = std::sqrt(ratio);
+    return 2.0 * ratio / ((1.0 + root) * (1.0 + root));
+}
+
 } // namespace
 
-CornerReach reach_at_speed(std::span<const Leg> before, std::span<const Leg> after,
-                           const Machine& machine) {
-    CornerReach reach{0.5 * length_of(before), 0.5 * length_of(after)};
-    const std::optional<double> turn =
-        before.empty() || after.empty() ? std::nullopt : turn_between(before.back(), after.front());
-    if (!states_dynamics(machine) || !turn) return reach;
+std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> after) {
+    const auto first = side_of(before, true), second = side_of(after, false);
+    if (!first || !second) return std::nullopt;
+    return turn_between(*first, *second);
+}
+
+double most_blend_deviation(const Machine& machine) {
+    double least = infinity, square = 0.0;
+    for (size_t i = 0; i < axis_count; ++i) {
+        const MachineAxis& axis = machine.axes[i];
+        if (!axis.present || is_rotary(i) || !axis.acceleration) continue;
+        least = std::min(least, *axis.acceleration);
+        square += *axis.acceleration * *axis.acceleration;
+    }
+    const double ratio = states_dynamics(machine) && least > 0.0
+                             ? std::sqrt(square) / (least_share * least)
+                             : infinity;
+    // It begins to brake 2 T / sin(turn / 2) before the corner.
+    return cycle * 2.0 * blend_share(ratio);
+}
+
+CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, double tolerance,
+                     bool is_feed, const Machine& machine) {
+    CornerBlend blend{{0.5 * length_of(before), length_of(after)}};
+    blend.deviation = std::min(blend.reach.before, blend.reach.after);
+    const auto first = side_of(before, true), second = side_of(after, false);
+    if (!first || !second) return blend;
+    const double half = 0.5 * turn_between(*first, *second);
+    const double most_override = is_feed ? feed_override : 1.0;
+    const double v1 = most_override * speed_on(before), v2 = most_override * speed_on(after);
+    const Accelerations of_second = accelerations_of(*second, machine);
+    const bool is_known = states_dynamics(machine);
+    double lean = 0.0; // of the direction that LinuxCNC takes for an arc after the corner
+    if (second->plane_normal)
+        lean = is_known
+                   ? core::atan2(v2 * v2, 4.0 * second->radius * of_second.least / share_along_arc)
+                   : std::numbers::pi;
+    const double seen = half - 0.5 * lean - least_angle;
+    double& d = blend.reach.before;
+    double& e = blend.reach.after;
+    const double to_middle = std::min(d, 0.5 * e);
+    if (seen > 0.0) d = std::min(d, cycle * 2.0 * tolerance / core::sin(seen));
+    if (!is_known) {
+        if (!first->plane_normal && !second->plane_normal && tolerance < infinity)
+            blend.deviation =
+                std::min(blend.deviation, cycle * 2.0 * blend_share(infinity) * tolerance);
+        return blend;
+    }
+    const double a1 = accelerations_of(*first, machine).least, a2 = of_second.most;
+    d = std::min(d, cycle * v1 * v1 / (2.0 * a1));
+    const double braking = std::sqrt(2.0 * d / a1); // seconds
+    e = std::min(e, cycle
+                        * (braking * a2 < v2 ? 0.5 * a2 * braking * braking
+                                             : v2 * braking - 0.5 * v2 * v2 / a2));
+    const double bends = a2 / a1 * d * d / 16.0 * (1.0 / first->radius + 1.0 / second->radius);
+    double deviation = blend_share(a2 / a1) * d * core::sin(half) + bends;
+    // Or it inserts a circle, with the acceleration of the slowest axis.
     double least = infinity;
     for (size_t i = 0; i < axis_count; ++i)
         if (machine.axes[i].present && !is_rotary(i))
             least = std::min(least, *machine.axes[i].acceleration);
-    // A blend, or a circle.
-    const double half = 0.5 * *turn;
+    const double speed = std::max(v1, v2);
     const double of_turn =
-        1.01 * std::max(1.0, 2.0 / std::numbers::sqrt3 * core::sin(half)) / core::cos(half);
-    const auto at_speed = [&](double speed) { return speed * speed / least * of_turn; };
-    return {std::min(reach.before, at_speed(speed_on(before))),
-            std::min(reach.after, at_speed(speed_on(after)))};
+        half > 0.0 ? std::max(2.0 / std::numbers::sqrt3, cycle / half) * core::tan(half) : cycle;
+    double circle = std::min(to_middle, speed * speed / least * of_turn);
+    if (half > 0.0) circle = std::min(circle, 2.0 * tolerance / core::sin(half));
+    d = std::max(d, circle);
+    e = std::max(e, circle);
+    deviation = std::max(deviation, circle * core::tan(0.5 * half));
+    blend.deviation = std::min({blend.deviation, deviation, d, e});
+    return blend;
 }
 
 std::optional<CornerRegion> corner_region(std::span<const Leg> before, std::span<const Leg> after,

@@ -31,13 +31,30 @@ struct CornerReach {
     double before = infinity, after = infinity;
 };
 
-/// The reach of a corner between two rapids, given by their legs, at which the control does not
-/// brake more than accelerations demand. Where the machine states them, and speeds, a motion cannot
-/// be left farther from the corner than its speed and they make it; never beyond its middle.
+/// How a control leaves the path at a corner at which it brakes along one motion while it
+/// accelerates along the next one, as LinuxCNC does.
+struct CornerBlend {
+    CornerReach reach;
+    double deviation = 0.0; // greatest distance from the path, mm
+};
+
+/// The blend between two motions, given by their legs. Both are rapids, or both are feeds.
 ///
-/// Source: docs/decisions/distance.md, "Rapids that keep their speed".
-CornerReach reach_at_speed(std::span<const Leg> before, std::span<const Leg> after,
-                           const Machine& machine);
+/// `tolerance`: from which the control computes where it begins to brake, mm; infinity: as soon as
+/// accelerations allow. Where the machine states speeds and accelerations, the blend reaches no
+/// farther than they make it, and never beyond the middle of the motion before the corner. Next to
+/// arcs the tolerance alone says nothing.
+///
+/// Source: docs/decisions/distance.md, "Corners of LinuxCNC".
+CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, double tolerance,
+                     bool is_feed, const Machine& machine);
+
+/// The change of direction between two motions, given by their legs, radians; empty if a direction
+/// is not known.
+std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> after);
+
+/// The greatest deviation of a blend between straight motions, as a multiple of its tolerance.
+double most_blend_deviation(const Machine& machine);
 
 /// The region of the corner between two motions, given by their legs; empty if nothing is rounded:
 /// no change of direction, no length, or no deviation.

@@ -143,6 +143,10 @@ struct PathModeChange {
         0.0; // feeds this close to a line may be joined into it, mm; adds to `tolerance`
     std::optional<double> distance = {}; // of the path at which such a corner is rounded, mm
     std::optional<double> rapid_tolerance = {}, rapid_distance = {}; // of corners between rapids
+    // LinuxCNC computes from `tolerance` and `rapid_tolerance` where it begins to brake; see
+    // `blend_at`. Otherwise they are the greatest deviations.
+    bool blends = false;
+    bool blends_at_arcs = false;    // likewise before and after arcs
     bool rapids_keep_speed = false; // corners between rapids are rounded as far as speeds demand
     bool between_kinds = false; // rounds corners between a rapid and a feed by the smaller distance
 };

@@ -142,9 +142,11 @@ RoundedCorners corners_at_start(const Machine& machine) {
 namespace {
 
 /// The limit that a program states, with at least one value; else that of the machine, if any.
+/// `blend`: greatest deviation of a blend as a multiple of its tolerance; 0: it is not a blend.
 CornerLimit limit_of(std::optional<double> deviation, std::optional<double> distance,
-                     const std::optional<double>& of_machine) {
+                     const std::optional<double>& of_machine, double blend) {
     if (!deviation && !distance) return {.deviation = of_machine.value_or(0.0)};
+    if (blend > 0.0 && deviation) return {.deviation = blend * *deviation, .blended = *deviation};
     // Between straight moves, the curve is in the triangle of the corner and the points at this
     // distance, all of which is within half of the distance of the path.
     CornerLimit limit{std::max(deviation.value_or(0.0), 0.5 * distance.value_or(0.0))};
@@ -153,26 +155,30 @@ CornerLimit limit_of(std::optional<double> deviation, std::optional<double> dist
 }
 
 CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
-    return {std::min(a.deviation, b.deviation), std::min(a.distance, b.distance)};
+    return {std::min(a.deviation, b.deviation), std::min(a.distance, b.distance),
+            std::min(a.blended, b.blended)};
 }
 
 } // namespace
 
 void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
     corners.by = corners.by_arc = 0.0;
-    corners.rapids = corners.mixed = {};
+    corners.rapids = corners.mixed = corners.arcs = {};
     corners.unknown = corners.unknown_rapids = false;
     if (change.blending != Blending::continuous) return;
     const auto is_stated = [](const auto& a, const auto& b, const auto& c) { return a || b || c; };
-    const CornerLimit feeds = limit_of(change.tolerance, change.distance, machine.corner_tolerance);
+    const double blend = change.blends ? most_blend_deviation(machine) : 0.0;
+    const CornerLimit feeds =
+        limit_of(change.tolerance, change.distance, machine.corner_tolerance, blend);
     // Next to an arc, a point between two points of the path is within the distance of one of them.
     // Joining may take an arc as two chords, of which each is half as far off, and join those.
     corners.by = std::max(feeds.deviation, change.distance.value_or(0.0)) + change.joining;
     corners.by_arc = corners.by + change.joining;
-    corners.rapids =
-        limit_of(change.rapid_tolerance, change.rapid_distance, machine.rapid_corner_tolerance);
+    corners.rapids = limit_of(change.rapid_tolerance, change.rapid_distance,
+                              machine.rapid_corner_tolerance, blend);
     const bool keeps_speed = change.rapids_keep_speed && !machine.rapid_corner_tolerance;
-    if (keeps_speed) corners.rapids = {.deviation = infinity};
+    if (keeps_speed) corners.rapids = {.deviation = infinity, .blended = infinity};
+    if (change.blends_at_arcs && feeds.blends()) corners.arcs = feeds;
     if (change.between_kinds) corners.mixed = smaller(feeds, corners.rapids);
     corners.unknown = !is_stated(change.tolerance, change.distance, machine.corner_tolerance);
     corners.unknown_rapids = !corners.rapids.keeps_speed()
@@ -181,18 +187,26 @@ void change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
 }
 
 double deviation_of(const CornerLimit& limit, const std::vector<Leg>& legs) {
-    return limit.keeps_speed() ? 0.5 * length_of(legs) : limit.deviation;
+    return limit.keeps_speed() ? length_of(legs) : limit.deviation;
+}
+
+void RoundedCorners::end(MotionKind kind, bool is_arc) {
+    const bool is_feed = kind != MotionKind::rapid;
+    last.kind = kind;
+    last.is_arc = is_arc;
+    last.legs.clear();
+    last.by = !is_feed ? 0.0 : is_arc ? by_arc : by;
+    last.rapids = rapids;
+    last.mixed = mixed;
+    last.arcs = is_feed ? arcs : CornerLimit();
 }
 
 void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path) {
     constexpr size_t most_legs = 4096; // more chords of an arc are longer than any rounding
     if (motion.from == motion.to && !motion.arc) return;
-    corners.last.kind = motion.kind;
-    corners.last.legs.clear();
-    corners.last.rapids = corners.rapids;
-    corners.last.mixed = corners.mixed;
+    corners.end(motion.kind, motion.arc.has_value());
     const bool rapid = motion.kind == MotionKind::rapid;
-    if (!(rapid && corners.rapids.rounds()) && !corners.mixed.rounds()) return;
+    if (!(rapid ? corners.rapids : corners.arcs).rounds() && !corners.mixed.rounds()) return;
     // From an unknown start, the whole region was checked, or is reported as unchecked.
     if (path.legs.empty() || !path.legs.front().start_known) return;
     const size_t first = path.legs.size() > most_legs ? path.legs.size() - most_legs : 0;

@@ -111,10 +111,12 @@ const typename Clearances::value_type* deciding_pair(const Clearances& pairs) {
 struct CornerLimit {
     double deviation = 0.0;     // greatest distance from the programmed path, mm; 0: not rounded
     double distance = infinity; // at most this far before and after the corner, mm along the path
+    double blended = 0.0; // the tolerance of a blend (`blend_at`), mm; 0: it is rounded otherwise
 
     bool rounds() const { return deviation > 0.0; }
+    bool blends() const { return blended > 0.0; }
 
-    /// Whether a corner is rounded as far as speeds and accelerations make it (`reach_at_speed`).
+    /// Whether a corner is rounded as far as speeds and accelerations make it.
     bool keeps_speed() const { return deviation == infinity; }
 };
 
@@ -131,8 +133,10 @@ struct CornerStart {
     ~CornerStart();
 
     std::optional<MotionKind> kind; // empty: the machine comes from rest
-    std::vector<Leg> legs;          // its last legs, if the corner after it may be rounded
-    CornerLimit rapids, mixed;      // as in `RoundedCorners`, when it was programmed
+    bool is_arc = false;
+    std::vector<Leg> legs;           // its last legs, if the corner after it may be rounded
+    double by = 0.0;                 // of a feed: how far it deviates
+    CornerLimit rapids, mixed, arcs; // as in `RoundedCorners`, when it was programmed
 };
 
 /// How far the tool may deviate from its programmed path because the control rounds corners, mm.
@@ -149,17 +153,21 @@ struct RoundedCorners {
     CornerLimit rapids;          // between rapids; see `keeps_speed`
     bool unknown_rapids = false; // the control may round rapids by an unknown amount
     CornerLimit mixed;           // between a rapid and a feed
+    CornerLimit arcs;            // between feeds of which one is an arc, if more than `by` of both
     CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
     double by_axes_of_cuts = 0.0;   // likewise of them by the tolerances of axes of rotation
     bool has_cut = false;           // a feed has met the stock
 
-    /// Deviation of a feed.
-    double of_feed(bool is_arc) const { return is_arc ? by_arc : by; }
+    /// Deviation of a feed, with that of the corner where it begins.
+    double of_feed(bool is_arc) const { return std::max(is_arc ? by_arc : by, last.by); }
 
     /// How far the surface of the cut stock may be from where it is measured.
     double of_stock() const { return of_cuts + by_axes_of_cuts; }
+
+    /// Records the end of a motion, without its legs.
+    void end(MotionKind kind, bool is_arc);
 
     /// Records a cutting feed.
     void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc) {

@@ -257,7 +257,9 @@ void set_blending(Execution& execution, bool rounds) {
     if (execution.dialect.id != DialectId::linuxcnc) return;
     modal.corner_tolerances.rapids_keep_speed =
         modal.path_tolerance == 0.0 && execution.environment.control.follows_start;
-    if (modal.path_tolerance > 0.0) modal.corner_tolerances.rapid_tolerance = modal.path_tolerance;
+    if (!(modal.path_tolerance > 0.0)) return;
+    modal.corner_tolerances.rapid_tolerance = modal.path_tolerance;
+    modal.corner_tolerances.blends = true;
 }
 
 /// G187 of Haas: E states how far corners may be rounded, until G187 without it, which restores

@@ -122,6 +122,7 @@ void add_modes(Digest& digest, const ModalState& modal) {
     for (const auto& value : {corners.distance, corners.rapid_tolerance, corners.rapid_distance})
         digest.add(value);
     digest.add(uint64_t{corners.between_kinds});
+    digest.add(uint64_t{corners.blends});
 }
 
 void add(Digest& digest, const ModalState& modal) {

@@ -254,6 +254,7 @@ struct CornerTolerances {
     std::optional<double> rapid_distance;  // between rapids, before and after the corner
     bool between_kinds = false;            // corners between a rapid and a feed are rounded, too
     bool rapids_keep_speed = false; // those between rapids as far as speeds demand, if not stated
+    bool blends = false;            // tolerances say where the control begins to brake (LinuxCNC)
 
     bool operator==(const CornerTolerances&) const = default;
 };

@@ -266,6 +266,7 @@ struct Visitor {
         change.distance = command.corners.distance;
         change.rapid_tolerance = command.corners.rapid_tolerance;
         change.rapid_distance = command.corners.rapid_distance;
+        change.blends = change.blends_at_arcs = command.corners.blends;
         change.rapids_keep_speed = command.corners.rapids_keep_speed;
         change.between_kinds = command.corners.between_kinds;
         events.emplace_back(change);

@@ -1,6 +1,9 @@
 #include <cmath>
+#include <fstream>
 #include <numbers>
 #include <random>
+#include <sstream>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -163,7 +166,8 @@ TEST(CornerRegion, ContainsMachinesThatKeepTheirSpeed) {
         first.end = glm::length(in) / speed;
         second.end = glm::length(out) / speed;
         const std::vector<Leg> before = {first}, after = {second};
-        const CornerReach reach = reach_at_speed(before, after, machine_with(acceleration));
+        const CornerReach reach =
+            blend_at(before, after, infinity, false, machine_with(acceleration)).reach;
         const auto region = corner_region(before, after, infinity, reach);
         ASSERT_TRUE(region);
         // The planner keeps half of the acceleration for the other motion.
@@ -176,7 +180,7 @@ TEST(CornerRegion, ContainsMachinesThatKeepTheirSpeed) {
         for (const Vec3& p : on_a_circle(path, std::min(on_circle, half))) positions.push_back(p);
         for (const Vec3& p : positions) EXPECT_LE(outside(p, *region), 1e-6);
         EXPECT_LE(reach.before, 0.5 * glm::length(in) + 1e-9);
-        EXPECT_LE(reach.after, 0.5 * glm::length(out) + 1e-9);
+        EXPECT_LE(reach.after, glm::length(out) + 1e-9);
         const bool is_short = reach.before < 0.4 * glm::length(in);
         below_half += is_short;
         at_half += !is_short;
@@ -199,7 +203,8 @@ TEST(CornerRegion, BeginsWhereThePlannerOfLinuxcncLeavesThePath) {
         Leg first = leg({0, 0, 0}, corner), second = leg(corner, end);
         first.end = second.end = 2.0;
         const std::vector<Leg> before = {first}, after = {second};
-        const CornerReach reach = reach_at_speed(before, after, machine_with(1000.0));
+        const CornerReach reach =
+            blend_at(before, after, infinity, false, machine_with(1000.0)).reach;
         EXPECT_GE(reach.before, 10.0 * reached) << turn;
         EXPECT_GE(reach.after, 10.0 * reached) << turn;
         if (turn <= 150.0) {
@@ -208,12 +213,106 @@ TEST(CornerRegion, BeginsWhereThePlannerOfLinuxcncLeavesThePath) {
     }
 }
 
-TEST(CornerRegion, ReachesToTheMiddleIfAccelerationsAreNotKnown) {
+TEST(CornerBlend, BeginsInTheMiddleIfAccelerationsAreNotKnown) {
     const std::vector<Leg> before = {leg({0, 0, 0}, {10, 0, 0})},
                            after = {leg({10, 0, 0}, {10, 8, 0})};
-    const CornerReach reach = reach_at_speed(before, after, machine_with(std::nullopt));
+    const CornerReach reach =
+        blend_at(before, after, infinity, false, machine_with(std::nullopt)).reach;
     EXPECT_EQ(reach.before, 5.0);
-    EXPECT_EQ(reach.after, 4.0);
+    EXPECT_EQ(reach.after, 8.0) << "a slow motion before it takes its time";
+}
+
+/// A corner that the planner of LinuxCNC has made, and how it left it (linuxcnc_corners.txt).
+struct RecordedCorner {
+    Machine machine;
+    double tolerance = 0.0, feed = 0.0; // 0: none; a rapid
+    Motion motions[2];
+    int arc = 0; // 1: the first motion, 2: the second one
+    double before = 0.0, after = 0.0, off = 0.0;
+
+    std::vector<Leg> legs(size_t i) const { return path_of(motions[i], machine, 1e-3).legs; }
+    CornerBlend blend(const Machine& on) const {
+        return blend_at(legs(0), legs(1), tolerance > 0.0 ? tolerance : infinity, feed > 0.0, on);
+    }
+    Machine without_dynamics() const {
+        Machine unstated = machine;
+        for (MachineAxis& axis : unstated.axes) axis.acceleration.reset();
+        return unstated;
+    }
+};
+
+std::vector<RecordedCorner> recorded_corners() {
+    std::ifstream file(FEELER_SOURCE_DIR "/tests/core/linuxcnc_corners.txt");
+    std::vector<RecordedCorner> corners;
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with('#')) continue;
+        std::istringstream words(line);
+        RecordedCorner corner;
+        Vec3 from, to;
+        ArcPath arc;
+        for (size_t i = 0; i < 3; ++i) {
+            double speed = 0.0;
+            words >> speed;
+            corner.machine.axes[i].rapid = 60.0 * speed;
+        }
+        for (size_t i = 0; i < 3; ++i) {
+            double acceleration = 0.0;
+            words >> acceleration;
+            corner.machine.axes[i].acceleration = acceleration;
+        }
+        words >> corner.tolerance >> corner.feed >> from.x >> from.y >> from.z >> to.x >> to.y
+            >> to.z >> corner.arc >> arc.centre.x >> arc.centre.y >> arc.angle >> corner.before
+            >> corner.after >> corner.off;
+        EXPECT_TRUE(words) << line;
+        const Vec3 ends[] = {from, Vec3(0.0), to};
+        for (size_t i = 0; i < 2; ++i) {
+            Motion& motion = corner.motions[i];
+            motion.from = {ends[i].x, ends[i].y, ends[i].z};
+            motion.to = {ends[i + 1].x, ends[i + 1].y, ends[i + 1].z};
+            motion.feed = 60.0 * corner.feed;
+            motion.kind = corner.feed > 0.0 ? MotionKind::feed : MotionKind::rapid;
+            if (corner.arc != static_cast<int>(i) + 1) continue;
+            motion.kind = MotionKind::arc;
+            motion.arc = arc;
+        }
+        corners.push_back(corner);
+    }
+    EXPECT_EQ(corners.size(), 400U);
+    return corners;
+}
+
+TEST(CornerBlend, ContainsWhatThePlannerOfLinuxcncDoes) {
+    constexpr double recorded = 2e-4; // mm
+    size_t lines = 0, arcs = 0, close = 0, beyond_tolerance = 0;
+    for (const RecordedCorner& corner : recorded_corners()) {
+        const CornerBlend blend = corner.blend(corner.machine);
+        EXPECT_LE(corner.off, blend.deviation + recorded);
+        EXPECT_LE(corner.before, blend.reach.before + recorded);
+        EXPECT_LE(corner.after, blend.reach.after + recorded);
+        (corner.arc == 0 ? lines : arcs) += corner.off > recorded;
+        close += corner.off > 0.3 * blend.deviation;
+        const bool is_straight = corner.arc == 0 && corner.tolerance > 0.0;
+        if (!is_straight) continue;
+        beyond_tolerance += corner.off > corner.tolerance;
+        EXPECT_LE(corner.off, most_blend_deviation(corner.machine) * corner.tolerance + recorded);
+        const CornerBlend unstated = corner.blend(corner.without_dynamics());
+        EXPECT_LE(corner.off, unstated.deviation + recorded);
+        EXPECT_LE(corner.before, unstated.reach.before + recorded);
+        EXPECT_LE(corner.after, unstated.reach.after + recorded);
+    }
+    EXPECT_GT(lines, 150U);
+    EXPECT_GT(arcs, 150U);
+    EXPECT_GT(close, 150U) << "the bounds are not far off";
+    EXPECT_GT(beyond_tolerance, 3U);
+}
+
+TEST(CornerBlend, CountsFourTimesTheToleranceWithoutAccelerations) {
+    EXPECT_NEAR(most_blend_deviation(machine_with(std::nullopt)), 4.2, 1e-12);
+    EXPECT_NEAR(most_blend_deviation(machine_with(500.0)), 1.84, 0.01);
+    Machine slow_head = machine_with(500.0);
+    slow_head.axes[2].acceleration = 50.0;
+    EXPECT_GT(most_blend_deviation(slow_head), 2.5);
+    EXPECT_LT(most_blend_deviation(slow_head), 4.2);
 }
 
 TEST(CornerRegion, EndsAtTheLimits) {

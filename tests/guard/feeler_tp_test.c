@@ -81,14 +81,9 @@ static int is_unlocked(int axis) {
     (void)axis;
     return 1;
 }
-static double velocity_limit(int axis) {
-    (void)axis;
-    return 100.0;
-}
-static double acceleration_limit(int axis) {
-    (void)axis;
-    return 1000.0;
-}
+static double axis_speed[3] = {100, 100, 100}, axis_acceleration[3] = {1000, 1000, 1000};
+static double velocity_limit(int axis) { return axis < 3 ? axis_speed[axis] : 100.0; }
+static double acceleration_limit(int axis) { return axis < 3 ? axis_acceleration[axis] : 1000.0; }
 
 /* --- helpers -----------------------------------------------------------------------------------*/
 
@@ -746,7 +741,7 @@ static double off_two_lines(EmcPose const *now, void const *path) {
     return fmin(off[0], off[1]);
 }
 
-/* The guard counts a corner with what the accelerations of the two motions allow (corner_factor). */
+/* The guard counts a corner with what accelerations allow (core/motion/corner.h). */
 static void leaves_corners_by_no_more_than_the_guard_counts(void) {
     srand(11);
     ring->feed_tolerance = 0.1;
@@ -781,6 +776,163 @@ static void leaves_corners_by_no_more_than_the_guard_counts(void) {
     printf("off the path by up to %.2f of what the guard counts, %.2f times the tolerance\n", most, widest);
     EXPECT(most <= 1.0);
     EXPECT(most > 0.5 && widest > 1.2); /* it does blend */
+}
+
+/* --- corners of LinuxCNC without feeler_tp ------------------------------------------------------*/
+
+/* A corner of two motions; one may be an arc in the plane of X and Y. */
+struct corner {
+    double speed[3], acceleration[3]; /* of the axes */
+    double tolerance, feed;           /* feed: 0 for rapids */
+    EmcPose pose[3];                  /* the corner is the second one */
+    int arc;                          /* 1: the first motion, 2: the second one */
+    PmCartesian centre;
+    double angle; /* of the arc; positive: counterclockwise */
+    /* What the planner did: how far before and after the corner it left the path of two lines, and how
+     * far it was from the path. */
+    double before, after, off;
+};
+
+/* As LinuxCNC's emccanon.cc does: what the axes allow in this direction. */
+static double along(double const *limit, EmcPose const *a, EmcPose const *b) {
+    double const way[3] = {b->tran.x - a->tran.x, b->tran.y - a->tran.y, b->tran.z - a->tran.z};
+    double most = 1e99;
+    for (int i = 0; i < 3; ++i)
+        if (way[i] != 0) most = fmin(most, limit[i] * distance(a, b) / fabs(way[i]));
+    return most;
+}
+
+static struct corner draw_corner(int k) {
+    struct corner c = {.tolerance = k % 4 == 0 ? 0 : pow(10, uniform(-2, 0.5)), .arc = k % 4 < 2 ? 0 : k % 4 - 1};
+    double const same = pow(10, uniform(2, 3.5));
+    for (int i = 0; i < 3; ++i) {
+        c.speed[i] = pow(10, uniform(1, 2.3));
+        c.acceleration[i] = k % 8 < 4 ? same : pow(10, uniform(2, 3.5));
+    }
+    /* Rapids are without a tolerance, or every third corner of lines. */
+    if (c.tolerance > 0 && (c.arc || k % 3)) c.feed = pow(10, uniform(0.5, 2));
+    double const length = pow(10, uniform(-0.3, 1.9)), heading = uniform(-3.1, 3.1);
+    double const turn = k % 5 == 0 ? uniform(-0.3, 0.3) : uniform(-3.0, 3.0);
+    double const height = c.arc ? 0 : uniform(-1, 1), flat = sqrt(1 - height * height);
+    c.pose[0] = c.pose[1] = c.pose[2] = at(0, 0, 0);
+    EmcPose *const far = c.arc == 1 ? &c.pose[2] : &c.pose[0]; /* of the line */
+    double const sign = c.arc == 1 ? 1 : -1;
+    *far = at(sign * length * flat * cos(heading), sign * length * flat * sin(heading), sign * length * height);
+    if (!c.arc) {
+        double const next = pow(10, uniform(-0.3, 1.9)), rise = fmax(-1, fmin(1, height + uniform(-0.5, 0.5))),
+                     level = sqrt(1 - rise * rise);
+        c.pose[2] = at(next * level * cos(heading + turn), next * level * sin(heading + turn), next * rise);
+        return c;
+    }
+    double const radius = pow(10, uniform(0, 2)), side = k % 16 < 8 ? 1 : -1, tangent = heading + turn;
+    c.angle = side * uniform(0.1, 6.0);
+    c.centre.x = -side * radius * sin(tangent), c.centre.y = side * radius * cos(tangent), c.centre.z = 0;
+    double const turned = c.arc == 1 ? tangent - c.angle : tangent + c.angle;
+    c.pose[c.arc == 1 ? 0 : 2] =
+        at(c.centre.x + side * radius * sin(turned), c.centre.y - side * radius * cos(turned), 0);
+    return c;
+}
+
+static double off_corner(EmcPose const *now, struct corner const *c) {
+    double least = 1e9;
+    for (int i = 0; i < 2; ++i) {
+        double off;
+        if (c->arc == i + 1) {
+            double const radius = hypot(c->centre.x, c->centre.y);
+            off = hypot(hypot(now->tran.x - c->centre.x, now->tran.y - c->centre.y) - radius, now->tran.z);
+        } else {
+            off_line(now, &c->pose[i], &c->pose[i + 1], 0, &off);
+        }
+        least = fmin(least, off);
+    }
+    return least;
+}
+
+/* How far before and after the corner of two lines a place is, along both. */
+static void note_reach(EmcPose const *now, struct corner *c) {
+    double const *const a = &c->pose[0].tran.x, *const b = &c->pose[2].tran.x, *const p = &now->tran.x;
+    double const first = distance(&c->pose[0], &c->pose[1]), second = distance(&c->pose[1], &c->pose[2]);
+    double uv = 0, pu = 0, pv = 0;
+    for (int i = 0; i < 3; ++i) {
+        double const u = -a[i] / first, v = b[i] / second;
+        uv += u * v, pu += p[i] * u, pv += p[i] * v;
+    }
+    if (1 - uv * uv < 1e-6) return;
+    c->before = fmax(c->before, (uv * pv - pu) / (1 - uv * uv));
+    c->after = fmax(c->after, (pv - uv * pu) / (1 - uv * uv));
+}
+
+static void make_corner(struct corner *c, int k) {
+    PmCartesian const up = {0, 0, c->angle < 0 ? -1 : 1};
+    memcpy(axis_speed, c->speed, sizeof axis_speed);
+    memcpy(axis_acceleration, c->acceleration, sizeof axis_acceleration);
+    real_tpClear(&tp);
+    real_tpSetPos(&tp, &c->pose[0]);
+    config.arcBlendEnable = k % 3 != 0;
+    real_tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, c->tolerance);
+    for (int i = 0; i < 2; ++i) {
+        EmcPose const *const from = &c->pose[i], *const to = &c->pose[i + 1];
+        int const is_arc = c->arc == i + 1;
+        double const limit = is_arc ? fmin(c->speed[0], c->speed[1]) : along(c->speed, from, to);
+        double const acceleration =
+            is_arc ? fmin(c->acceleration[0], c->acceleration[1]) : along(c->acceleration, from, to);
+        double const speed = c->feed > 0 ? fmin(c->feed, limit) : limit;
+        real_tpSetId(&tp, ++line_number);
+        EXPECT((is_arc ? real_tpAddCircle(&tp, *to, c->centre, up, 0, 3, speed, limit, acceleration, 0xff, 0, tag)
+                       : real_tpAddLine(&tp, *to, c->feed > 0 ? 2 : 1, speed, limit, acceleration, 0xff, 0, -1, tag))
+               == TP_ERR_OK);
+        double const length = is_arc ? hypot(c->centre.x, c->centre.y) * fabs(c->angle) : distance(from, to);
+        /* LinuxCNC makes no blend arc if the second one comes late. */
+        if (i == 0 && k / 2 % 2)
+            for (int n = (int)(700 * length / speed); n > 0; --n) real_tpRunCycle(&tp, 1000000);
+    }
+    for (int i = 0; i < 200000 && (i < 5 || !real_tpIsDone(&tp)); ++i) {
+        EmcPose now;
+        real_tpRunCycle(&tp, 1000000);
+        tpGetPos(&tp, &now);
+        double const off = off_corner(&now, c);
+        c->off = fmax(c->off, off);
+        if (!c->arc && off > 1e-4) note_reach(&now, c);
+    }
+    EXPECT(real_tpIsDone(&tp));
+}
+
+/* How the planner leaves corners. The file is what core's bounds of them are tested with. */
+static void leaves_corners_as_recorded(void) {
+    char const *const record = getenv("FEELER_RECORD_CORNERS"); /* a file to write instead */
+    FILE *const file = fopen(record ? record : CORNERS, record ? "w" : "r");
+    EXPECT(file != NULL);
+    if (!file) return;
+    char line[1000];
+    if (record)
+        fputs("# Corners of the planner of LinuxCNC 2.9: tests/guard/feeler_tp_test.c. mm, seconds, radians.\n"
+              "# speeds and accelerations of X, Y, Z; tolerance (0: none); feed (0: rapids); from; corner is 0, 0, 0;\n"
+              "# to; arc (1: first motion, 2: second); its centre; its angle; left before; after; off the path\n",
+              file);
+    else
+        for (int i = 0; i < 3; ++i) EXPECT(fgets(line, sizeof line, file) != NULL);
+    srand(31);
+    for (int k = 0; k < 400; ++k) {
+        struct corner c = draw_corner(k);
+        make_corner(&c, k);
+        if (record) {
+            for (int i = 0; i < 3; ++i) fprintf(file, "%.9g ", c.speed[i]);
+            for (int i = 0; i < 3; ++i) fprintf(file, "%.9g ", c.acceleration[i]);
+            fprintf(file, "%.9g %.9g ", c.tolerance, c.feed);
+            for (int i = 0; i < 3; i += 2)
+                fprintf(file, "%.12g %.12g %.12g ", c.pose[i].tran.x, c.pose[i].tran.y, c.pose[i].tran.z);
+            fprintf(file, "%d %.12g %.12g %.12g ", c.arc, c.centre.x, c.centre.y, c.angle);
+            fprintf(file, "%.5f %.5f %.5f\n", c.before, c.after, c.off);
+            continue;
+        }
+        EXPECT(fgets(line, sizeof line, file) != NULL);
+        char const *end = line + strlen(line);
+        for (int blanks = 0; end > line && blanks < 3; blanks += *--end == ' ') {}
+        double before, after, off;
+        EXPECT(sscanf(end, "%lf %lf %lf", &before, &after, &off) == 3);
+        EXPECT(fabs(before - c.before) < 1e-3 && fabs(after - c.after) < 1e-3 && fabs(off - c.off) < 1e-3);
+    }
+    fclose(file);
 }
 
 /* A line, and an arc about `centre` in the plane of X and Y. */
@@ -928,6 +1080,7 @@ int main(int count, char **words) {
         CASE(ends_the_program_when_a_position_is_set),
         CASE(leaves_turning_corners_by_little),
         CASE(leaves_corners_by_no_more_than_the_guard_counts),
+        CASE(leaves_corners_as_recorded),
         CASE(keeps_to_the_path_at_arcs),
         CASE(does_not_stop_between_a_line_and_an_arc_that_touch),
         CASE(passes_blocks_of_a_rotary_axis_without_a_stop),

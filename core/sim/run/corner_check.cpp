@@ -37,6 +37,23 @@ struct CornerCheck {
     }
 };
 
+std::string corner_assumption(const CornerLimit& limit, bool between_feeds, bool knows_dynamics) {
+    if (between_feeds)
+        return "LinuxCNC may leave corners of arcs by more than the tolerance of G64, depending on "
+               "feeds (up to 120 %) and accelerations; clearances include this";
+    if (!limit.keeps_speed())
+        return fmt::format("corners between rapids may be rounded by up to {:.4g} mm; clearances "
+                           "include this",
+                           limit.deviation);
+    return fmt::format(
+        "corners between rapids are rounded as far as {} (G64 without P); "
+        "clearances include this",
+        knows_dynamics
+            ? "the speeds and accelerations of the machine make it"
+            : "to the middle of the move before them, because speeds and accelerations of "
+              "the axes are not stated");
+}
+
 } // namespace
 
 void BlockRun::note_axis_tolerances(const Path& path) {
@@ -68,43 +85,50 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
     if (by == 0.0) return;
     off_path = std::max(off_path, by);
     if (cuts) corners.note_cut(state.tool, motion.arc.has_value());
-    state.assumptions.insert(fmt::format(
-        "{} may deviate by up to {:g} mm from the programmed path while the control rounds "
-        "corners; clearances include this",
-        motion.arc && corners.by_arc != corners.by ? "arcs" : "feeds", by));
+    const double own = motion.arc ? corners.by_arc : corners.by;
+    if (own > 0.0)
+        state.assumptions.insert(fmt::format(
+            "{} may deviate by up to {:.4g} mm from the programmed path while the control rounds "
+            "corners; clearances include this",
+            motion.arc && corners.by_arc != corners.by ? "arcs" : "feeds", own));
 }
 
 void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const CornerStart& last = state.corners.last;
     if (!last.kind) return;
     const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
-    if (!rapid && !was) return; // the whole feed counts as rounded
-    const CornerLimit& limit = rapid && was ? last.rapids : last.mixed;
-    const CornerReach reach = limit.keeps_speed()
-                                  ? reach_at_speed(last.legs, path.legs, setup.machine)
-                                  : CornerReach{limit.distance, limit.distance};
-    // The curve is within a triangle that begins and ends at the reach.
-    const double most = limit.keeps_speed() ? std::min(reach.before, reach.after) : limit.deviation;
-    auto region = corner_region(last.legs, path.legs, most, reach);
+    const bool between_feeds = !rapid && !was;
+    const bool at_arc = motion.arc || last.is_arc;
+    if (between_feeds && !at_arc) return; // the whole feed counts as rounded
+    const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
+    if (!limit.rounds()) return;
+    CornerBlend blend{{limit.distance, limit.distance}, limit.deviation};
+    if (limit.blends())
+        blend = blend_at(last.legs, path.legs, limit.blended, between_feeds, setup.machine);
+    if (between_feeds && !states_dynamics(setup.machine)) {
+        constexpr double sharp = 0.02; // radians
+        if (turn_at(last.legs, path.legs).value_or(0.0) > sharp)
+            state.assumptions.insert("LinuxCNC leaves corners of arcs by no more than those of "
+                                     "lines: it may leave them by more, but the machine does not "
+                                     "state `rapid` and `acceleration` of its axes");
+        return;
+    }
+    if (between_feeds && blend.deviation <= std::min(last.by, off_path)) return;
+    auto region = corner_region(last.legs, path.legs, blend.deviation, blend.reach);
     if (!region) return;
     state.assumptions.insert(
-        limit.keeps_speed()
-            ? fmt::format("corners between rapids are rounded as far as {} (G64 without P); "
-                          "clearances include this",
-                          states_dynamics(setup.machine)
-                              ? "the speeds and accelerations of the machine make it"
-                              : "to the middle of the moves, because speeds and accelerations of "
-                                "the axes are not stated")
-            : fmt::format("corners between rapids may be rounded by up to {:g} mm; clearances "
-                          "include this",
-                          limit.deviation));
+        corner_assumption(limit, between_feeds, states_dynamics(setup.machine)));
+    if (between_feeds && use(motion) == FluteUse::cutting)
+        state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
     if (region->hull.positions.empty()) {
         state.assumptions.insert("corners of rapids at which rotary axes turn are not rounded");
         return;
     }
     const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
     const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
-    const double deviation = bends && limit.distance < infinity ? limit.distance : most;
+    const double deviation = bends && limit.distance < infinity ? limit.distance : blend.deviation;
+    // Between straight moves the curve is within a triangle that begins and ends at the reach.
+    if (bends && limit.blends()) region->hull.path_error += blend.deviation;
     note_axis_tolerances({.legs = {region->hull}});
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
