@@ -104,6 +104,10 @@ struct DeviceStock {
         for (const LineRun& run : writer.runs) give_back(space, run);
         return answer;
     }
+    bool refuses(const Question& q) {
+        const Answer answer = ask(q);
+        return answer.stop != Stop::none || answer.found;
+    }
 };
 
 inline core::StockSeparation exact_distance(const Question& q, const core::CutModel& stock) {
@@ -116,11 +120,9 @@ inline core::StockSeparation exact_distance(const Question& q, const core::CutMo
 }
 
 inline void judge(JudgedQueries& all, const Question& q, const core::CutModel& stock,
-                  DeviceStock& device) {
-    const Answer answer = device.ask(q);
+                  bool refuses) {
     const core::Separation exact = exact_distance(q, stock).separation;
     const bool violates = exact.upper < q.allowance || exact.upper == 0.0;
-    const bool refuses = answer.stop != Stop::none || answer.found;
     ++all.asked;
     all.violations += violates ? 1 : 0;
     all.refused += refuses ? 1 : 0;
@@ -132,17 +134,25 @@ inline void judge(JudgedQueries& all, const Question& q, const core::CutModel& s
                            + std::to_string(exact.upper) + " of " + std::to_string(q.allowance);
 }
 
-inline JudgedQueries judged_queries(uint32_t seed, const QueryKind& kind) {
+/// Asks a device that is made from each stock, and says whether it refuses a question.
+template <typename Device>
+JudgedQueries judged_queries_of(uint32_t seed, const QueryKind& kind) {
     std::mt19937 rng(seed);
     JudgedQueries all;
     for (int i = 0; i < kind.stocks; ++i) {
         const test_support::CutBox world = test_support::random_cut_box(rng, rng() % 5, 0.0);
         const core::CutModel stock = world.model(kind.h);
-        DeviceStock device(stock);
-        for (int k = 0; k < kind.queries; ++k)
-            judge(all, random_question(rng, world.box, kind.grid), stock, device);
+        Device device(stock);
+        for (int k = 0; k < kind.queries; ++k) {
+            const Question q = random_question(rng, world.box, kind.grid);
+            judge(all, q, stock, device.refuses(q));
+        }
     }
     return all;
+}
+
+inline JudgedQueries judged_queries(uint32_t seed, const QueryKind& kind) {
+    return judged_queries_of<DeviceStock>(seed, kind);
 }
 
 } // namespace hwsim
