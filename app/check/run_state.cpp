@@ -56,6 +56,10 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     add(digest, corners.mixed);
     add(digest, corners.arcs);
     digest.add(corners.last.by);
+    digest.add(corners.left_after);
+    digest.add(corners.off_after);
+    for (const core::AxisValues& position : corners.last.joined)
+        for (const double value : position) digest.add(value);
     digest.add(corners.last.kind ? uint64_t(*corners.last.kind) + 1 : 0);
     for (const core::Leg& leg : corners.last.legs)
         for (const core::AxisValues& position : leg.positions)

@@ -174,9 +174,8 @@ std::string problem_of_speeds(const LiveMotion& motion, const core::Machine& mac
     const bool is_free_rapid =
         (motion.purpose == FEELER_RAPID || motion.purpose == FEELER_TOOL_CHANGE)
         && motion.tolerance == 0.0;
-    const double least = is_free_rapid && acceleration < core::infinity ? acceleration : 0.0;
-    if (motion.acceleration < (1.0 - slack) * least
-        || motion.acceleration > (1.0 + slack) * acceleration)
+    if (acceleration < core::infinity
+        && std::abs(motion.acceleration - acceleration) > slack * acceleration)
         return fmt::format("LinuxCNC makes this motion with {:.4g} mm/s2, and the ini file says "
                            "{:.4g}{}",
                            motion.acceleration, acceleration, why);
@@ -437,25 +436,22 @@ std::string LiveCheck::begin(const LiveMotion& motion) {
     return {};
 }
 
-/// The motion with how far the corner at its start may be rounded: by the mode of the one before,
-/// if that is wider.
-LiveMotion LiveCheck::with_corner(LiveMotion motion) const {
+/// The motion with how far it may be off at the corner where it begins. How that is rounded, the
+/// state knows from the motion before.
+LiveMotion LiveCheck::with_corner(LiveMotion motion) {
     const bool is_rapid = motion.purpose == FEELER_RAPID;
-    if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0) return motion;
-    const LiveMotion& before = waiting_.back().queued;
-    if (before.blending != FEELER_BLENDED || is_rapid != (before.purpose == FEELER_RAPID)
-        || moves_others(before) != moves_others(motion)) // feeler_tp lets it begin at rest
+    const auto is_blended_with = [&](const LiveMotion& before) {
+        return before.blending == FEELER_BLENDED && is_rapid == (before.purpose == FEELER_RAPID)
+               && moves_others(before) == moves_others(motion); // else it begins at rest
+    };
+    if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0
+        || !is_blended_with(waiting_.back().queued)) {
+        ahead_->corners.last.by = 0.0;
         return motion;
+    }
+    const LiveMotion& before = waiting_.back().queued;
     motion.path_error = std::max(motion.path_error, before.path_error);
     motion.turn_error = std::max(motion.turn_error, before.turn_error);
-    // Rapids without a tolerance are rounded as far as speeds demand.
-    const bool is_free =
-        before.tolerance == 0.0 || (motion.blending == FEELER_BLENDED && motion.tolerance == 0.0);
-    motion.tolerance = is_free ? 0.0
-                       : motion.blending == FEELER_BLENDED
-                           ? std::max(motion.tolerance, before.tolerance)
-                           : before.tolerance;
-    motion.blending = FEELER_BLENDED;
     return motion;
 }
 
@@ -487,6 +483,7 @@ LiveAnswer LiveCheck::judge(const LiveMotion& queued) {
 LiveAnswer LiveCheck::judge_retreat(const LiveMotion& queued) {
     if (std::string why = begin(queued); !why.empty()) return refused({.reason = std::move(why)});
     const LiveMotion motion = with_corner(queued);
+    const double rounded_before = ahead_->corners.last.by;
     const std::vector<core::Event> events = events_of(motion, *ahead_);
     if (!tool_of(motion, judge_.setup())) {
         LiveAnswer answer = judge_.judge_with_each_tool(events, *ahead_);
@@ -494,11 +491,13 @@ LiveAnswer LiveCheck::judge_retreat(const LiveMotion& queued) {
     }
     // Bounds of a motion include how far the control may round its corners; those at rest do not.
     constexpr double most_rounding = 0.1; // mm
-    const double off = moves_others(motion)
-                           ? motion.tolerance
-                           : motion.tolerance * core::most_blend_deviation(judge_.setup().machine);
+    const double of_mode =
+        motion.blending != FEELER_BLENDED ? 0.0
+        : moves_others(motion)
+            ? motion.tolerance
+            : motion.tolerance * core::most_blend_deviation(judge_.setup().machine);
     const double rounding =
-        std::min(motion.blending == FEELER_BLENDED ? off : 0.0, most_rounding) + motion.path_error;
+        std::min(std::max(of_mode, rounded_before), most_rounding) + motion.path_error;
     LiveAnswer answer = judge_.judge_retreat(events, rounding, *ahead_);
     if (answer.may_move) return permitted(queued, motion);
     if (answer.cure.empty())

@@ -70,7 +70,7 @@ private:
                          const core::AxisValues& to) const;
     void add_chords(const LiveMotion& motion, const core::ArcPath& arc,
                     std::vector<core::Event>& events) const;
-    LiveMotion with_corner(LiveMotion motion) const;
+    LiveMotion with_corner(LiveMotion motion);
     LiveAnswer permitted(const LiveMotion& queued, const LiveMotion& checked);
     LiveAnswer refused(LiveAnswer answer);
 

@@ -74,29 +74,6 @@ std::vector<core::Event> before_motion(const std::vector<core::Event>& events) {
     return before;
 }
 
-/// Whether a tool leaves what it has cut when it goes straight up: flutes and shank get no narrower
-/// upwards, or it only drills. Above the head of a T-slot cutter there may be stock.
-bool leaves_its_cut_upwards(const core::ToolAssembly& tool) {
-    constexpr double most_undercut = 0.25; // mm
-    const auto shape = std::find_if(
-        core::tool_shapes().begin(), core::tool_shapes().end(),
-        [&](const core::ToolShapeEntry& one) { return one.shape == tool.description.shape; });
-    if (shape != core::tool_shapes().end() && shape->only_drills) return true;
-    std::vector<core::ProfileElement> elements;
-    for (const core::ToolPart& part : tool.parts)
-        if (core::is_below_holder(part.kind))
-            elements.insert(elements.end(), part.profile.elements.begin(),
-                            part.profile.elements.end());
-    std::sort(elements.begin(), elements.end(),
-              [](const auto& a, const auto& b) { return a.z1 + a.margin < b.z1 + b.margin; });
-    double widest = 0.0;
-    for (const core::ProfileElement& element : elements) {
-        widest = std::max({widest, element.r0 + element.margin, element.r1 + element.margin});
-        if (element.r1 + element.margin < widest - most_undercut) return false;
-    }
-    return true;
-}
-
 } // namespace
 
 bool goes_straight_up(const std::vector<core::Event>& events) {
@@ -198,7 +175,8 @@ LiveAnswer MotionJudge::judge_retreat(std::vector<core::Event> events, double ro
     // Out of what it has cut, or of what the set-up still takes for stock.
     const bool goes_up = goes_straight_up(events);
     const auto held = state.tool ? setup_.tools.find(*state.tool) : setup_.tools.end();
-    const bool may_catch = held != setup_.tools.end() && !leaves_its_cut_upwards(held->second);
+    const bool may_catch =
+        held != setup_.tools.end() && !core::leaves_its_cut_upwards(held->second);
     bool is_caught = false, overlaps = false;
     const double slack = retreat_tolerance + rounding;
     const auto comes_nearer = [&](const core::PairClearance& pair) {

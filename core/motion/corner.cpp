@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/base/math.h"
+#include "core/base/units.h"
 #include "core/motion/machine.h"
 
 namespace core {
@@ -116,9 +117,13 @@ constexpr double feed_override = 1.2;
 
 /// A motion at its end at a corner.
 struct CornerSide {
-    AxisValues heading{}; // of the linear axes; length 1
+    AxisValues heading{};  // of the linear axes; length 1
+    Vec3 seen = Vec3(0.0); // the direction that LinuxCNC takes, but for the lean of arcs
     double radius = infinity;
     std::optional<size_t> plane_normal = {}; // of an arc
+    bool rises = false;                      // of an arc: it is a helix
+
+    bool is_arc() const { return plane_normal.has_value(); }
 };
 
 /// The greatest speed on legs, mm/s.
@@ -129,7 +134,8 @@ double speed_on(std::span<const Leg> legs) {
     return speed;
 }
 
-/// The direction of an arc at a fraction of its angle, and its least radius.
+/// The directions of an arc at a fraction of its angle, and its least radius. LinuxCNC leaves out
+/// how it rises, and how its radius changes.
 void set_heading(CornerSide& side, const Motion& motion, double fraction) {
     const ArcPath& arc = *motion.arc;
     const auto n = static_cast<size_t>(arc.normal), u = (n + 1) % 3, v = (n + 2) % 3;
@@ -148,6 +154,9 @@ void set_heading(CornerSide& side, const Motion& motion, double fraction) {
     side.heading[u] = -around * out_v + (after - before) * out_u;
     side.heading[v] = around * out_u + (after - before) * out_v;
     side.heading[n] = *motion.to[n] - *motion.from[n];
+    side.rises = side.heading[n] != 0.0;
+    side.seen[static_cast<int>(u)] = arc.angle > 0.0 ? -out_v : out_v;
+    side.seen[static_cast<int>(v)] = arc.angle > 0.0 ? out_u : -out_u;
 }
 
 /// Empty if the direction there is not known.
@@ -163,11 +172,20 @@ std::optional<CornerSide> side_of(std::span<const Leg> legs, bool at_end) {
     const double size = std::sqrt(dot(side.heading, side.heading));
     if (!(size > 0.0)) return std::nullopt;
     for (double& part : side.heading) part /= size;
+    if (!side.is_arc()) side.seen = Vec3(side.heading[0], side.heading[1], side.heading[2]);
     return side;
 }
 
+double angle_between(double cosine) { return core::acos(std::clamp(cosine, -1.0, 1.0)); }
+
 double turn_between(const CornerSide& before, const CornerSide& after) {
-    return core::acos(std::clamp(dot(before.heading, after.heading), -1.0, 1.0));
+    return angle_between(dot(before.heading, after.heading));
+}
+
+/// The angle between the direction of an arc and the one that LinuxCNC takes for it.
+double slope_of(const CornerSide& side) {
+    return angle_between(side.heading[0] * side.seen.x + side.heading[1] * side.seen.y
+                         + side.heading[2] * side.seen.z);
 }
 
 /// The least and the greatest acceleration along a motion beside a corner, mm/s2, of a machine that
@@ -179,15 +197,17 @@ struct Accelerations {
 
 Accelerations accelerations_of(const CornerSide& side, const Machine& machine) {
     Accelerations along;
-    if (side.plane_normal) { // those of the axes, whatever the direction
+    if (side.is_arc()) { // those of the axes, whatever the direction
+        constexpr double of_helix = std::numbers::sqrt2;
         along.most = 0.0;
         for (size_t i = 0; i < 3; ++i) {
-            if (i == *side.plane_normal && side.heading[i] == 0.0) continue;
+            if (i == *side.plane_normal && !side.rises) continue;
             const double axis = machine.axes[i].acceleration.value_or(infinity);
             along.least = std::min(along.least, axis);
             along.most = std::max(along.most, axis);
         }
-        return {share_along_arc * least_share * along.least, along.most};
+        return {share_along_arc * least_share * along.least,
+                (side.rises ? of_helix : 1.0) * along.most};
     }
     for (size_t i = 0; i < axis_count; ++i)
         if (side.heading[i] != 0.0 && machine.axes[i].acceleration)
@@ -205,7 +225,164 @@ double blend_share(double ratio) {
     return 2.0 * ratio / ((1.0 + root) * (1.0 + root));
 }
 
+/// The acceleration of the slowest linear axis, mm/s2, of a machine that states all.
+double least_acceleration(const Machine& machine) {
+    double least = infinity;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (machine.axes[i].present && !is_rotary(i))
+            least = std::min(least, *machine.axes[i].acceleration);
+    return least;
+}
+
+/// The blend of a machine that states its dynamics, in X, Y and Z.
+class KnownBlend {
+public:
+    KnownBlend(const CornerSide& first, const CornerSide& second, double tolerance,
+               const std::array<double, 2>& speeds, const Machine& machine)
+        : first_(first),
+          second_(second),
+          tolerance_(tolerance),
+          v1_(speeds[0]),
+          v2_(speeds[1]),
+          a1_(accelerations_of(first, machine).least),
+          a2_(accelerations_of(second, machine).most),
+          slowest_(least_acceleration(machine)) {
+        // Of an arc after the corner, LinuxCNC takes a direction that leans to its centre.
+        if (second.is_arc())
+            lean_ =
+                core::atan2(v2_ * v2_, 4.0 * second.radius * accelerations_of(second, machine).least
+                                           / share_along_arc);
+    }
+
+    /// `middle`, `end`: the lengths of half of the first motion and of the second one, mm.
+    CornerBlend at_known_turn(double middle, double end) const {
+        const double half = 0.5 * turn_between(first_, second_);
+        const double seen =
+            0.5 * (angle_between(glm::dot(first_.seen, second_.seen)) - lean_) - least_angle;
+        double d = middle;
+        if (seen > 0.0) d = std::min(d, cycle * 2.0 * tolerance_ / core::sin(seen));
+        CornerBlend blend = from(d, end);
+        blend.deviation += blend_share(a2_ / a1_) * blend.reach.before * core::sin(half);
+        // Or it inserts a circle, with the acceleration of the slowest axis.
+        const double speed = std::max(v1_, v2_);
+        const double of_turn =
+            half > 0.0 ? std::max(2.0 / std::numbers::sqrt3, cycle / half) * core::tan(half)
+                       : cycle;
+        double circle = std::min({middle, 0.5 * end, speed * speed / slowest_ * of_turn});
+        if (half > 0.0) circle = std::min(circle, 2.0 * tolerance_ / core::sin(half));
+        blend.reach = {std::max(blend.reach.before, circle), std::max(blend.reach.after, circle)};
+        blend.deviation = std::max(blend.deviation, circle * core::tan(0.5 * half));
+        return blend;
+    }
+
+    /// Whatever the turn. Circles reach farther, within the tolerance.
+    CornerBlend at_any_turn(double middle, double end) const {
+        CornerBlend blend = from(middle, end);
+        const double unseen = 0.5 * (lean_ + slope_of(first_) + slope_of(second_)) + least_angle;
+        blend.deviation +=
+            blend_share(a2_ / a1_)
+            * (cycle * 2.0 * tolerance_
+               + blend.reach.before * core::sin(std::min(unseen, 0.5 * std::numbers::pi)));
+        blend.deviation = std::max(blend.deviation, tolerance_); // of circles
+        return blend;
+    }
+
+private:
+    /// The reach of a blend that begins to brake `most` before the corner at the earliest, and how
+    /// far the curves of arcs are from their tangents.
+    CornerBlend from(double most, double end) const {
+        const double d = std::min(most, cycle * v1_ * v1_ / (2.0 * a1_));
+        const double braking = std::sqrt(2.0 * d / a1_); // seconds
+        const double way = braking * a2_ < v2_ ? 0.5 * a2_ * braking * braking
+                                               : v2_ * braking - 0.5 * v2_ * v2_ / a2_;
+        return {{d, std::min(end, cycle * way)},
+                a2_ / a1_ * d * d / 16.0 * (1.0 / first_.radius + 1.0 / second_.radius)};
+    }
+
+    const CornerSide &first_, &second_;
+    double tolerance_, v1_, v2_, a1_, a2_, slowest_, lean_ = 0.0;
+};
+
+/// A straight motion of any axes, for one millimetre in X, Y and Z.
+struct Rates {
+    AxisValues rates{};
+    double speed = infinity; // in X, Y and Z, mm/s
+};
+
+std::optional<Rates> rates_of(const Leg& leg) {
+    if (!has_ends(leg) || leg.arc.motion) return std::nullopt;
+    Rates motion;
+    const AxisValues &from = leg.positions.front(), &to = leg.positions.back();
+    const double length =
+        core::hypot(core::hypot(to[0] - from[0], to[1] - from[1]), to[2] - from[2]);
+    if (!(length > 0.0)) return std::nullopt;
+    for (size_t i = 0; i < axis_count; ++i) motion.rates[i] = (to[i] - from[i]) / length;
+    if (leg.end > leg.begin) motion.speed = length / (leg.end - leg.begin);
+    return motion;
+}
+
+/// The sum of what the rotary axes turn on legs, radians.
+double turned_on(std::span<const Leg> legs) {
+    double degrees = 0.0;
+    for (const Leg& leg : legs)
+        for (size_t i = 0; i < axis_count; ++i)
+            if (is_rotary(i) && !leg.positions.empty())
+                degrees += std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
+    return degrees / degrees_per_radian;
+}
+
+/// The least acceleration along a straight motion that is blended, mm/s2; 0 if an axis that it
+/// moves does not state it.
+double least_along(const Rates& motion, const Machine& machine) {
+    double least = infinity;
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (motion.rates[i] == 0.0) continue;
+        if (!machine.axes[i].acceleration) return 0.0;
+        least = std::min(least, *machine.axes[i].acceleration / std::abs(motion.rates[i]));
+    }
+    return least_share * least;
+}
+
+/// The blend of motions of which one moves other axes than X, Y and Z.
+CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> after,
+                            double tolerance, double most_override, const Machine& machine) {
+    const double middle = 0.5 * length_of(before), end = length_of(after);
+    if (before.empty() || after.empty()) return {{middle, end}, middle, 0.5 * turned_on(before)};
+    const auto first = rates_of(before.back()), second = rates_of(after.front());
+    // At most half of the first motion is left when the second one begins, so its path is that far
+    // off.
+    if (!first || !second) return {{middle, end}, middle, 0.5 * turned_on(before)};
+    // It brakes with half of the acceleration from which its speed was computed.
+    constexpr double longer = 2.0;
+    double cosine = 0.0, square = 0.0, degrees = 0.0;
+    for (size_t i = 0; i < axis_count; ++i) {
+        const double change = std::abs(second->rates[i] - first->rates[i]);
+        if (i < 3) cosine += first->rates[i] * second->rates[i];
+        if (is_rotary(i))
+            degrees += change;
+        else
+            square += change * change;
+    }
+    const double half = 0.5 * angle_between(cosine);
+    double both = std::min(middle, end); // that is made at the same time
+    if (half > least_angle)
+        both = std::min(both, longer * cycle * 2.0 * tolerance / core::sin(half - least_angle));
+    const double least = least_along(*first, machine), speed = most_override * first->speed;
+    if (least > 0.0) both = std::min(both, cycle * speed * speed / (2.0 * least));
+    return {{middle, end}, std::sqrt(square) * both, degrees / degrees_per_radian * both};
+}
+
 } // namespace
+
+bool moves_other_axes(std::span<const Leg> legs) {
+    return std::any_of(legs.begin(), legs.end(), [](const Leg& leg) {
+        for (const AxisValues& position : leg.positions)
+            if (!std::equal(position.begin() + 3, position.end(),
+                            leg.positions.front().begin() + 3))
+                return true;
+        return false;
+    });
+}
 
 std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> after) {
     const auto first = side_of(before, true), second = side_of(after, false);
@@ -213,70 +390,60 @@ std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> 
     return turn_between(*first, *second);
 }
 
+double most_reach_of_speed(const Machine& machine) {
+    if (!states_dynamics(machine)) return 0.0;
+    return cycle * feed_override * feed_override
+           / (2.0 * share_along_arc * least_share * least_acceleration(machine));
+}
+
 double most_blend_deviation(const Machine& machine) {
-    double least = infinity, square = 0.0;
-    for (size_t i = 0; i < axis_count; ++i) {
-        const MachineAxis& axis = machine.axes[i];
-        if (!axis.present || is_rotary(i) || !axis.acceleration) continue;
-        least = std::min(least, *axis.acceleration);
-        square += *axis.acceleration * *axis.acceleration;
+    double ratio = infinity;
+    if (states_dynamics(machine)) {
+        double square = 0.0;
+        for (size_t i = 0; i < axis_count; ++i)
+            if (machine.axes[i].present && !is_rotary(i))
+                square += *machine.axes[i].acceleration * *machine.axes[i].acceleration;
+        ratio = std::sqrt(square) / (least_share * least_acceleration(machine));
     }
-    const double ratio = states_dynamics(machine) && least > 0.0
-                             ? std::sqrt(square) / (least_share * least)
-                             : infinity;
     // It begins to brake 2 T / sin(turn / 2) before the corner.
     return cycle * 2.0 * blend_share(ratio);
 }
 
 CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, double tolerance,
-                     bool is_feed, const Machine& machine) {
-    CornerBlend blend{{0.5 * length_of(before), length_of(after)}};
-    blend.deviation = std::min(blend.reach.before, blend.reach.after);
+                     CornerKind kind, const Machine& machine) {
+    if (moves_other_axes(before) || moves_other_axes(after))
+        return blend_of_others(before, after, tolerance,
+                               kind == CornerKind::rapids ? 1.0 : feed_override, machine);
+    const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
+    const bool is_joined = kind == CornerKind::joined_feeds;
+    const double middle = 0.5 * length_of(before);
+    const double end =
+        is_joined && !after.empty() && !is_arc(after.front()) ? infinity : length_of(after);
+    CornerBlend blend{{middle, end}, std::min(middle, end)};
+    if (before.empty() || after.empty()) return blend;
+    const bool is_straight = !is_arc(before.back()) && !is_arc(after.front());
+    if (is_straight && tolerance < infinity)
+        blend.deviation = std::min(blend.deviation, most_blend_deviation(machine) * tolerance);
     const auto first = side_of(before, true), second = side_of(after, false);
     if (!first || !second) return blend;
-    const double half = 0.5 * turn_between(*first, *second);
-    const double most_override = is_feed ? feed_override : 1.0;
-    const double v1 = most_override * speed_on(before), v2 = most_override * speed_on(after);
-    const Accelerations of_second = accelerations_of(*second, machine);
-    const bool is_known = states_dynamics(machine);
-    double lean = 0.0; // of the direction that LinuxCNC takes for an arc after the corner
-    if (second->plane_normal)
-        lean = is_known
-                   ? core::atan2(v2 * v2, 4.0 * second->radius * of_second.least / share_along_arc)
-                   : std::numbers::pi;
-    const double seen = half - 0.5 * lean - least_angle;
-    double& d = blend.reach.before;
-    double& e = blend.reach.after;
-    const double to_middle = std::min(d, 0.5 * e);
-    if (seen > 0.0) d = std::min(d, cycle * 2.0 * tolerance / core::sin(seen));
-    if (!is_known) {
-        if (!first->plane_normal && !second->plane_normal && tolerance < infinity)
-            blend.deviation =
-                std::min(blend.deviation, cycle * 2.0 * blend_share(infinity) * tolerance);
+    if (!states_dynamics(machine)) {
+        const double half = 0.5 * turn_between(*first, *second);
+        if (is_straight && !is_joined && half > least_angle)
+            blend.reach.before =
+                std::min(middle, cycle * 2.0 * tolerance / core::sin(half - least_angle));
         return blend;
     }
-    const double a1 = accelerations_of(*first, machine).least, a2 = of_second.most;
-    d = std::min(d, cycle * v1 * v1 / (2.0 * a1));
-    const double braking = std::sqrt(2.0 * d / a1); // seconds
-    e = std::min(e, cycle
-                        * (braking * a2 < v2 ? 0.5 * a2 * braking * braking
-                                             : v2 * braking - 0.5 * v2 * v2 / a2));
-    const double bends = a2 / a1 * d * d / 16.0 * (1.0 / first->radius + 1.0 / second->radius);
-    double deviation = blend_share(a2 / a1) * d * core::sin(half) + bends;
-    // Or it inserts a circle, with the acceleration of the slowest axis.
-    double least = infinity;
-    for (size_t i = 0; i < axis_count; ++i)
-        if (machine.axes[i].present && !is_rotary(i))
-            least = std::min(least, *machine.axes[i].acceleration);
-    const double speed = std::max(v1, v2);
-    const double of_turn =
-        half > 0.0 ? std::max(2.0 / std::numbers::sqrt3, cycle / half) * core::tan(half) : cycle;
-    double circle = std::min(to_middle, speed * speed / least * of_turn);
-    if (half > 0.0) circle = std::min(circle, 2.0 * tolerance / core::sin(half));
-    d = std::max(d, circle);
-    e = std::max(e, circle);
-    deviation = std::max(deviation, circle * core::tan(0.5 * half));
-    blend.deviation = std::min({blend.deviation, deviation, d, e});
+    const double most_override = kind == CornerKind::rapids ? 1.0 : feed_override;
+    const KnownBlend known(*first, *second, tolerance,
+                           {most_override * speed_on(before), most_override * speed_on(after)},
+                           machine);
+    const bool is_turn_known = !is_joined || (first->is_arc() && second->is_arc());
+    const CornerBlend bound =
+        is_turn_known ? known.at_known_turn(middle, end) : known.at_any_turn(middle, end);
+    blend.reach = bound.reach;
+    blend.deviation = std::min(blend.deviation, bound.deviation);
+    if (is_turn_known) // circles may reach farther otherwise
+        blend.deviation = std::min({blend.deviation, bound.reach.before, bound.reach.after});
     return blend;
 }
 

@@ -36,22 +36,37 @@ struct CornerReach {
 struct CornerBlend {
     CornerReach reach;
     double deviation = 0.0; // greatest distance from the path, mm
+    double turn = 0.0;      // greatest sum of what all rotary axes are off, radians
 };
 
-/// The blend between two motions, given by their legs. Both are rapids, or both are feeds.
+/// Which motions meet at a corner.
+enum class CornerKind : uint8_t {
+    rapids,
+    feeds,
+    joined_feeds // straight ones may be parts of longer ones
+};
+
+/// The blend between two motions, given by their legs.
 ///
 /// `tolerance`: from which the control computes where it begins to brake, mm; infinity: as soon as
 /// accelerations allow. Where the machine states speeds and accelerations, the blend reaches no
 /// farther than they make it, and never beyond the middle of the motion before the corner. Next to
-/// arcs the tolerance alone says nothing.
+/// arcs, and where other axes than X, Y and Z move, the tolerance alone says nothing.
 ///
 /// Source: docs/decisions/distance.md, "Corners of LinuxCNC".
 CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, double tolerance,
-                     bool is_feed, const Machine& machine);
+                     CornerKind kind, const Machine& machine);
+
+/// Whether other axes than X, Y and Z move on legs.
+bool moves_other_axes(std::span<const Leg> legs);
 
 /// The change of direction between two motions, given by their legs, radians; empty if a direction
 /// is not known.
 std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> after);
+
+/// How far before a corner a feed is blended at most, divided by the square of its speed, s2/mm;
+/// 0 if the machine does not state its dynamics.
+double most_reach_of_speed(const Machine& machine);
 
 /// The greatest deviation of a blend between straight motions, as a multiple of its tolerance.
 double most_blend_deviation(const Machine& machine);

@@ -164,6 +164,8 @@ CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
 void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
     corners.by = corners.by_arc = 0.0;
     corners.rapids = corners.mixed = corners.arcs = {};
+    corners.joins = change.joining > 0.0;
+    corners.left_after = corners.off_after = 0.0;
     corners.unknown = corners.unknown_rapids = false;
     if (change.blending != Blending::continuous) return;
     const auto is_stated = [](const auto& a, const auto& b, const auto& c) { return a || b || c; };
@@ -179,6 +181,7 @@ void change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
     const bool keeps_speed = change.rapids_keep_speed && !machine.rapid_corner_tolerance;
     if (keeps_speed) corners.rapids = {.deviation = infinity, .blended = infinity};
     if (change.blends_at_arcs && feeds.blends()) corners.arcs = feeds;
+    if (corners.arcs.rounds()) corners.reach_of_speed = 2.0 * most_reach_of_speed(machine);
     if (change.between_kinds) corners.mixed = smaller(feeds, corners.rapids);
     corners.unknown = !is_stated(change.tolerance, change.distance, machine.corner_tolerance);
     corners.unknown_rapids = !corners.rapids.keeps_speed()
@@ -201,9 +204,43 @@ void RoundedCorners::end(MotionKind kind, bool is_arc) {
     last.arcs = is_feed ? arcs : CornerLimit();
 }
 
+namespace {
+
+/// Keeps where the lines begin with which a line may be joined, as far as the corner at its end may
+/// reach.
+void note_joined(RoundedCorners& corners, const Motion& motion, const Path& path) {
+    CornerStart& last = corners.last;
+    const auto is_line = [](const std::vector<Leg>& legs) {
+        return legs.size() == 1 && legs[0].straight && legs[0].positions.size() == 2
+               && !legs[0].arc.motion;
+    };
+    if (!corners.joins || motion.kind == MotionKind::rapid || !last.arcs.rounds() || last.is_arc
+        || !is_line(last.legs) || !is_line(path.legs)) {
+        last.joined.clear();
+        return;
+    }
+    last.joined.push_back(last.legs[0].positions.front());
+    constexpr size_t most = 100; // lines that LinuxCNC joins
+    const double time = path.legs[0].end - path.legs[0].begin;
+    const double speed = time > 0.0 ? length_of(path.legs) / time : 0.0;
+    const double enough = corners.reach_of_speed * speed * speed;
+    double length = 0.0;
+    size_t kept = last.joined.size();
+    AxisValues end = path.legs[0].positions.front();
+    for (; kept > 0 && last.joined.size() - kept < most && length < enough; --kept) {
+        const AxisValues& start = last.joined[kept - 1];
+        length += core::hypot(core::hypot(end[0] - start[0], end[1] - start[1]), end[2] - start[2]);
+        end = start;
+    }
+    last.joined.erase(last.joined.begin(), last.joined.begin() + static_cast<std::ptrdiff_t>(kept));
+}
+
+} // namespace
+
 void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path) {
     constexpr size_t most_legs = 4096; // more chords of an arc are longer than any rounding
     if (motion.from == motion.to && !motion.arc) return;
+    note_joined(corners, motion, path);
     corners.end(motion.kind, motion.arc.has_value());
     const bool rapid = motion.kind == MotionKind::rapid;
     if (!(rapid ? corners.rapids : corners.arcs).rounds() && !corners.mixed.rounds()) return;
@@ -212,6 +249,18 @@ void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path
     const size_t first = path.legs.size() > most_legs ? path.legs.size() - most_legs : 0;
     corners.last.legs.assign(path.legs.begin() + static_cast<std::ptrdiff_t>(first),
                              path.legs.end());
+}
+
+std::vector<Leg> CornerStart::legs_with_joined() const {
+    std::vector<Leg> all;
+    if (legs.empty()) return all;
+    for (size_t i = 0; i < joined.size(); ++i) {
+        const AxisValues& end =
+            i + 1 < joined.size() ? joined[i + 1] : legs.front().positions.front();
+        all.push_back({.positions = {joined[i], end}});
+    }
+    all.insert(all.end(), legs.begin(), legs.end());
+    return all;
 }
 
 void widen_by_stock(PairClearance& pair, double deviation) {

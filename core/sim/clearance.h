@@ -135,8 +135,12 @@ struct CornerStart {
     std::optional<MotionKind> kind; // empty: the machine comes from rest
     bool is_arc = false;
     std::vector<Leg> legs;           // its last legs, if the corner after it may be rounded
+    std::vector<AxisValues> joined;  // starts of the lines before it that may be joined with it
     double by = 0.0;                 // of a feed: how far it deviates
     CornerLimit rapids, mixed, arcs; // as in `RoundedCorners`, when it was programmed
+
+    /// `legs` after the lines that may be joined with them.
+    std::vector<Leg> legs_with_joined() const;
 };
 
 /// How far the tool may deviate from its programmed path because the control rounds corners, mm.
@@ -153,7 +157,13 @@ struct RoundedCorners {
     CornerLimit rapids;          // between rapids; see `keeps_speed`
     bool unknown_rapids = false; // the control may round rapids by an unknown amount
     CornerLimit mixed;           // between a rapid and a feed
-    CornerLimit arcs;            // between feeds of which one is an arc, if more than `by` of both
+    // Between feeds of which one is an arc, or moves other axes than X, Y and Z: if it is farther
+    // off than `by` of both.
+    CornerLimit arcs;
+    bool joins = false;          // straight feeds are joined
+    double reach_of_speed = 0.0; // s2/mm: times the square of a speed, twice where it is rounded
+    // The rest of a rounded corner, in feeds that may be joined to the one after it.
+    double left_after = 0.0, off_after = 0.0; // its length and its deviation, mm
     CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
@@ -178,6 +188,10 @@ struct RoundedCorners {
         of_cuts = std::max(of_cuts, of_feed(is_arc));
     }
 };
+
+/// In feeds that LinuxCNC blends, rotary axes that move count as this far off, radians: as much as
+/// at smooth corners.
+constexpr double smooth_turn = 1.7453292519943296e-4; // 0.01 degrees
 
 /// How far the bodies may be from where they are measured in a block, mm.
 struct BlockDeviation {

@@ -100,7 +100,7 @@ TEST(AssumedPlace, IsTheFirstIfTheProgramSetsSeveral) {
 TEST(AssumedPlace, OfBodiesInOneOfTwoWorkOffsetsIsThere) {
     // G55 cuts more, so the inferred stock is there.
     const auto both = [](double g54, double g55) {
-        return program("", "G54", g54) + program("", "G55", g55) + "G1 X0.\nX20.\n" + end;
+        return "G61\n" + program("", "G54", g54) + program("", "G55", g55) + "G1 X0.\nX20.\n" + end;
     };
     const auto with_stop = [](const std::string& frame) { return linuxcnc + tool + stop + frame; };
     const std::string g54 = "frame = \"G54\"\n", g55 = "frame = \"G55\"\n";

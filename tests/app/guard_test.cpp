@@ -612,17 +612,20 @@ TEST_F(GuardedMachine, SaysWhereItStopsAndThatItStillDoes) {
 /// LinuxCNC leaves a corner by more than its tolerance if it brakes less than it then accelerates.
 TEST_F(GuardedMachine, RoundsCornersMoreWhereAccelerationsDiffer) {
     struct Limits {
-        double acceleration, within; // mm/s2; the deviation, as a multiple of the tolerance
+        double acceleration, within; // of Z, mm/s2; the deviation, as a multiple of the tolerance
     };
-    for (const Limits& limits : {Limits{1000.0, 1.777}, {200.0, 2.73}, {5.0, 3.898}})
+    for (const Limits& limits : {Limits{1000.0, 1.843}, {200.0, 2.687}, {5.0, 3.884}})
         for (const double gap : {limits.within - 0.01, limits.within + 0.01}) {
             Machine machine;
-            app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+            core::Setup setup = setup_.setup;
+            for (size_t i = 0; i < 3; ++i)
+                setup.machine.axes[i].acceleration = i == 2 ? limits.acceleration : 1000.0;
+            app::Guard guard(setup, *machine.ring, 1.0, 0.1);
             machine.rapid(0, 0, 30);
             machine.line(0, 0, 20);
             machine.next.blending = FEELER_BLENDED;
             machine.next.tolerance = 0.5;
-            machine.next.acceleration = limits.acceleration;
+            machine.next.acceleration = 1000.0;
             machine.line(55.0 - 2.0 - 0.5 * gap, 0, 20); // 2 from the clamp, and the corner
             check_all(guard);
             EXPECT_EQ(machine.permitted(), gap > limits.within ? 3U : 2U)
@@ -673,6 +676,20 @@ TEST_F(GuardedMachine, RefusesRapidsWithOtherLimitsThanItKnows) {
         machine.rapid(20, 0, 50);
         check_all(guard);
         EXPECT_EQ(machine.permitted(), limits.is_permitted ? 2U : 1U);
+    }
+}
+
+TEST_F(GuardedMachine, RefusesFeedsWithOtherAccelerationsThanItKnows) {
+    for (const double factor : {1.0, 0.9, 1.1}) {
+        Machine machine;
+        app::Guard guard(setup_.setup, *machine.ring, 1.0, 0.1);
+        machine.rapid(0, 0, 50);
+        machine.next.blending = FEELER_BLENDED;
+        machine.next.tolerance = 0.02;
+        machine.next.acceleration = factor * *setup_.setup.machine.axes[0].acceleration;
+        machine.line(20, 0, 50);
+        check_all(guard);
+        EXPECT_EQ(machine.permitted(), factor == 1.0 ? 2U : 1U) << factor;
     }
 }
 

@@ -168,6 +168,55 @@ TEST(RoundedCorners, AreAbsentBetweenRapidsThatStopOrAreFollowedByFeeds) {
     EXPECT_EQ(verdict(mixed, {}), Verdict::undecided);
 }
 
+TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
+    // The tool tilts about the gauge line, towards the clamp. It is upright before it goes past.
+    for (const bool blends : {false, true}) {
+        core::Setup setup = around_a_corner(10.0, true);
+        MachineAxis& axis = setup.machine.axes[3];
+        axis.present = true;
+        axis.direction = Vec3(1, 0, 0);
+        axis.side = Side::tool;
+        axis.carrier = setup.machine.spindle;
+        setup.machine.spindle = link_of(3);
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        Corner corner(std::move(setup));
+        PathModeChange mode = within(0.02);
+        mode.blends = mode.blends_at_arcs = true;
+        if (blends)
+            corner.give({mode});
+        else
+            corner.give({PathModeChange{Blending::exact_stop, {}}});
+        const AxisPosition upright = {-60, 0, z, 0}, tilted = {-60, 0, z, -40},
+                           past = {20, 0, z, 0};
+        corner.give({Motion{.kind = MotionKind::rapid, .from = tilted, .to = tilted}});
+        corner.give(
+            {Motion{.kind = MotionKind::feed, .from = tilted, .to = upright, .feed = 600.0}});
+        corner.give({Motion{.kind = MotionKind::feed, .from = upright, .to = past, .feed = 600.0}});
+        EXPECT_EQ(corner.verdicts.back(), blends ? Verdict::undecided : Verdict::clear);
+    }
+}
+
+TEST(RoundedCorners, OfOneToolDoNotPutTheHolesOfAnotherInDoubt) {
+    core::Setup setup = around_a_corner(20.0, true);
+    setup.stock = {SolidBox{{{0, 0, -30}, {100, 100, 0}}}, 0.0};
+    ToolDescription other = setup.tools.at(ToolNumber{1}).description;
+    other.number = ToolNumber{2};
+    setup.tools.emplace(other.number, *assemble(other));
+    Corner corner(std::move(setup));
+    corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}, within(0.2)});
+    corner.go(MotionKind::feed, {20, 20, -5});
+    corner.go(MotionKind::feed, {60, 20, -5});
+    corner.go(MotionKind::rapid, {60, 20, 10});
+    corner.give({ToolChange{ToolNumber{2}}});
+    corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}});
+    corner.go(MotionKind::rapid, {40, 70, 10});
+    EXPECT_EQ(corner.go(MotionKind::feed, {40, 70, -8}), Verdict::clear);
+    EXPECT_EQ(corner.go(MotionKind::rapid, {40, 70, 10}), Verdict::clear);
+    corner.go(MotionKind::rapid, {60, 20, 10});
+    EXPECT_EQ(corner.go(MotionKind::rapid, {60, 20, -4.9}), Verdict::undecided)
+        << "what the other tool has left there is not known";
+}
+
 TEST(RoundedCorners, BeginAtADistanceAtTheEarliest) {
     for (const double distance : {2.0, 40.0}) {
         Corner corner(around_a_corner(2.1, true));

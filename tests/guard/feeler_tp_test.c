@@ -778,6 +778,35 @@ static void leaves_corners_by_no_more_than_the_guard_counts(void) {
     EXPECT(most > 0.5 && widest > 1.2); /* it does blend */
 }
 
+/* A permit that comes while a short line is made: what follows is not displaced. */
+static void ends_where_it_should_however_late_permits_come(void) {
+    double const x[] = {0.82, 4.92, 34.92, 34.92}, y[] = {0, -0.51, -0.51, 29.49};
+    for (int i = 0; i < 3; ++i) axis_speed[i] = 200, axis_acceleration[i] = 2000;
+    real_tpSetVmax(&tp, 1e4, 1e4);
+    real_tpSetVlimit(&tp, 1e4);
+    ring->feed_tolerance = 0.1;
+    tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, 0.05);
+    for (int late = 0; late < 60; ++late) {
+        EmcPose begin, now;
+        tpGetPos(&tp, &begin);
+        for (int i = 0; i < 4; ++i) {
+            tpSetId(&tp, ++line_number);
+            EXPECT(tpAddLine(&tp, at(begin.tran.x + x[i], begin.tran.y + y[i], 0), 2, 100, 200, 2000, 0xff, 0, -1, tag)
+                   == TP_ERR_OK);
+        }
+        permit(ring->written - 3);
+        cycle(late);
+        if (late % 3 == 0) {
+            permit(ring->written - 2);
+            cycle(late / 2);
+        }
+        permit(ring->written);
+        for (int i = 0; i < 20000 && (i < 5 || !tpIsDone(&tp)); ++i) cycle(1);
+        tpGetPos(&tp, &now);
+        EXPECT(fabs(now.tran.x - begin.tran.x - x[3]) < 1e-6 && fabs(now.tran.y - begin.tran.y - y[3]) < 1e-6);
+    }
+}
+
 /* --- corners of LinuxCNC without feeler_tp ------------------------------------------------------*/
 
 /* A corner of two motions; one may be an arc in the plane of X and Y. */
@@ -828,8 +857,9 @@ static struct corner draw_corner(int k) {
     c.angle = side * uniform(0.1, 6.0);
     c.centre.x = -side * radius * sin(tangent), c.centre.y = side * radius * cos(tangent), c.centre.z = 0;
     double const turned = c.arc == 1 ? tangent - c.angle : tangent + c.angle;
+    double const rise = k % 3 == 0 ? radius * fabs(c.angle) * uniform(-0.2, 0.2) : 0; /* of a helix */
     c.pose[c.arc == 1 ? 0 : 2] =
-        at(c.centre.x + side * radius * sin(turned), c.centre.y - side * radius * cos(turned), 0);
+        at(c.centre.x + side * radius * sin(turned), c.centre.y - side * radius * cos(turned), rise);
     return c;
 }
 
@@ -838,8 +868,14 @@ static double off_corner(EmcPose const *now, struct corner const *c) {
     for (int i = 0; i < 2; ++i) {
         double off;
         if (c->arc == i + 1) {
+            double const x = now->tran.x - c->centre.x, y = now->tran.y - c->centre.y;
             double const radius = hypot(c->centre.x, c->centre.y);
-            off = hypot(hypot(now->tran.x - c->centre.x, now->tran.y - c->centre.y) - radius, now->tran.z);
+            /* The angle from the corner, along the arc; in the middle of the rest, it is in doubt by a turn. */
+            double turned = atan2(c->centre.y * x - c->centre.x * y, -c->centre.x * x - c->centre.y * y);
+            if ((c->angle > 0) == (c->arc == 1)) turned = -turned;
+            if (turned < 0.5 * fabs(c->angle) - M_PI) turned += 2 * M_PI;
+            double const part = fmax(0, fmin(1, turned / fabs(c->angle)));
+            off = hypot(hypot(x, y) - radius, now->tran.z - part * c->pose[c->arc == 1 ? 0 : 2].tran.z);
         } else {
             off_line(now, &c->pose[i], &c->pose[i + 1], 0, &off);
         }
@@ -874,14 +910,16 @@ static void make_corner(struct corner *c, int k) {
         EmcPose const *const from = &c->pose[i], *const to = &c->pose[i + 1];
         int const is_arc = c->arc == i + 1;
         double const limit = is_arc ? fmin(c->speed[0], c->speed[1]) : along(c->speed, from, to);
-        double const acceleration =
+        double acceleration =
             is_arc ? fmin(c->acceleration[0], c->acceleration[1]) : along(c->acceleration, from, to);
+        double const rise = fabs(to->tran.z - from->tran.z);
+        if (is_arc && rise > 0) acceleration = fmin(acceleration, c->acceleration[2]);
         double const speed = c->feed > 0 ? fmin(c->feed, limit) : limit;
         real_tpSetId(&tp, ++line_number);
         EXPECT((is_arc ? real_tpAddCircle(&tp, *to, c->centre, up, 0, 3, speed, limit, acceleration, 0xff, 0, tag)
                        : real_tpAddLine(&tp, *to, c->feed > 0 ? 2 : 1, speed, limit, acceleration, 0xff, 0, -1, tag))
                == TP_ERR_OK);
-        double const length = is_arc ? hypot(c->centre.x, c->centre.y) * fabs(c->angle) : distance(from, to);
+        double const length = is_arc ? hypot(hypot(c->centre.x, c->centre.y) * c->angle, rise) : distance(from, to);
         /* LinuxCNC makes no blend arc if the second one comes late. */
         if (i == 0 && k / 2 % 2)
             for (int n = (int)(700 * length / speed); n > 0; --n) real_tpRunCycle(&tp, 1000000);
@@ -1080,6 +1118,7 @@ int main(int count, char **words) {
         CASE(ends_the_program_when_a_position_is_set),
         CASE(leaves_turning_corners_by_little),
         CASE(leaves_corners_by_no_more_than_the_guard_counts),
+        CASE(ends_where_it_should_however_late_permits_come),
         CASE(leaves_corners_as_recorded),
         CASE(keeps_to_the_path_at_arcs),
         CASE(does_not_stop_between_a_line_and_an_arc_that_touch),

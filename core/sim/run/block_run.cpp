@@ -103,6 +103,28 @@ bool cuts_along(const ToolAssembly& tool, const Motion& motion) {
     return !motion.arc && core::hypot(way(0), way(1)) <= slack + slope * way(2);
 }
 
+bool leaves_its_cut_upwards(const ToolAssembly& tool) {
+    constexpr double most_undercut = 0.25; // mm
+    const auto shape =
+        std::find_if(tool_shapes().begin(), tool_shapes().end(), [&](const ToolShapeEntry& one) {
+            return one.shape == tool.description.shape;
+        });
+    if (shape != tool_shapes().end() && shape->only_drills) return true;
+    std::vector<ProfileElement> elements;
+    for (const ToolPart& part : tool.parts)
+        if (is_below_holder(part.kind))
+            elements.insert(elements.end(), part.profile.elements.begin(),
+                            part.profile.elements.end());
+    std::sort(elements.begin(), elements.end(),
+              [](const auto& a, const auto& b) { return a.z1 + a.margin < b.z1 + b.margin; });
+    double widest = 0.0;
+    for (const ProfileElement& element : elements) {
+        widest = std::max({widest, element.r0 + element.margin, element.r1 + element.margin});
+        if (element.r1 + element.margin < widest - most_undercut) return false;
+    }
+    return true;
+}
+
 /// Notes which pairs the motion that ended just now made worse. Returns their indices in
 /// `worst_motions`.
 std::vector<size_t> BlockRun::note_worst(MotionKind kind) {
@@ -274,13 +296,25 @@ Finding BlockRun::finding_about(const PairClearance& pair, const PairStudy& stud
     return finding;
 }
 
-bool BlockRun::only_touches_raw_stock(const PairClearance& pair) {
+bool BlockRun::touches_no_doubtful_stock(const PairClearance& pair) {
     if (pair.pair.fixture || !tool()) return false;
     const double room =
         contact_depth(pair.allowance) - std::max(off_path, off_path_rapids) - off_by_axes;
     LegCheck check = leg_check(FluteUse::not_cutting);
+    // Straight up from where it has stopped after a feed, the tool stays where it has been itself,
+    // however the corners before were rounded.
+    const bool is_flutes = pair.pair == Pair{PartKind::flutes};
+    const bool may_stop = is_below_holder(pair.pair.part) && !setup.machine.has_rotary()
+                          && !corners_before.last.mixed.rounds() && !state.corners.mixed.rounds()
+                          && leaves_its_cut_upwards(*tool());
+    bool has_stopped =
+        may_stop && corners_before.last.kind && *corners_before.last.kind != MotionKind::rapid;
     return std::all_of(legs.begin(), legs.end(), [&](const TimedLeg& timed) {
-        return check.reach_into_raw_stock(pair.pair, timed.leg, state.stock) <= room;
+        const bool is_cut = is_flutes && timed.use == FluteUse::cutting;
+        const bool leaves = has_stopped && timed.is_rapid && rises(timed.leg);
+        has_stopped = may_stop && (!timed.is_rapid || leaves);
+        return is_cut || leaves
+               || check.reach_into_raw_stock(pair.pair, timed.leg, state.stock) <= room;
     });
 }
 
@@ -298,7 +332,7 @@ void BlockRun::conclude() {
             pair.verdict == Verdict::clear && state.corners.of_stock() + off_by_axes > 0.0;
         const bool is_kept = follows && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
         widen(pair, of, state.corners, follows,
-              is_doubtful && !is_kept && only_touches_raw_stock(pair));
+              is_doubtful && !is_kept && touches_no_doubtful_stock(pair));
         widen_by_stock(pair, setup.stock.deviation);
     }
     if (const TrackedPair* worst = deciding_pair(pairs)) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/motion/corner.h"
 #include "core/sim/leg/leg_check.h"
 #include "core/sim/run/cure_trial.h"
 #include "core/sim/run/finding_text.h"
@@ -116,9 +117,9 @@ struct BlockRun {
 
     /// `is_spread`: the legs are hulls because the start or the end of the motion is uncertain.
     void check_path(const Motion& motion, const Path& path, bool is_spread);
-    /// Whether a pair at most touches the raw stock on all legs of the block, so that it does not
-    /// matter what is left of it.
-    bool only_touches_raw_stock(const PairClearance& pair);
+    /// Whether it does not matter for a pair what rounded corners have left of the stock: on all
+    /// legs of the block it at most touches the raw stock, cuts, or leaves what it has just cut.
+    bool touches_no_doubtful_stock(const PairClearance& pair);
     /// Cuts the stock along a path without measuring, for a block with a `Judgement`.
     void follow_path(const Motion& motion, const Path& path);
     /// Runs the check of a leg. A pair that becomes worse on it only because of stock that an
@@ -171,6 +172,14 @@ struct BlockRun {
     /// Measures all bodies at rest wherever the machine may be.
     void check_rest(const Path& path);
     void check_corner(const Motion& motion, const Path& path);
+    /// The corner before lines that may be joined with these.
+    void check_joined_after_corner(const Path& path);
+    /// A corner between feeds of which one moves other axes than X, Y and Z.
+    void check_turning_corner(const Motion& motion, const Path& path, const CornerBlend& blend);
+    /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the
+    /// path `along` it, if that is stated. `may_cut`: the flutes may meet the stock.
+    void check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
+                      double deviation, bool may_cut);
     void check_from_unknown(const Motion& motion, const Path& path);
     /// Whether a motion with an unknown start is proven clear from every possible start.
     bool is_clear_from_anywhere(const Motion& motion);

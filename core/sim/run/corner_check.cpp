@@ -21,11 +21,15 @@ struct CornerCheck {
     }
 
     /// The clearance of a pair on the rounded path, of which only bounds are known. Empty if the
-    /// pair needs no clearance.
-    std::optional<PairClearance> clearance(const PairClearance& in_hull) const {
+    /// pair needs no clearance. `knows_path`: `along` is the programmed path.
+    std::optional<PairClearance> clearance(const PairClearance& in_hull, bool knows_path) const {
         PairClearance now{.pair = in_hull.pair, .allowance = in_hull.allowance};
         now.lower = in_hull.lower;
         if (in_hull.verdict == Verdict::clear) return now;
+        if (!knows_path) {
+            now.verdict = judge_distance(now.allowance, now.lower, infinity);
+            return now;
+        }
         const TrackedPair* on_path = on_the_path(in_hull.pair);
         if (!on_path) return std::nullopt;
         now.lower = std::max(now.lower, on_path->lower - deviation);
@@ -93,19 +97,38 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
             motion.arc && corners.by_arc != corners.by ? "arcs" : "feeds", own));
 }
 
+namespace {
+
+/// A leg beside a corner, whose bodies are off as the control leaves it.
+Leg off_path_by(Leg leg, const CornerBlend& blend) {
+    leg.path_error += blend.deviation;
+    leg.turn_error += blend.turn;
+    return leg;
+}
+
+} // namespace
+
 void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const CornerStart& last = state.corners.last;
     if (!last.kind) return;
     const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
     const bool between_feeds = !rapid && !was;
     const bool at_arc = motion.arc || last.is_arc;
-    if (between_feeds && !at_arc) return; // the whole feed counts as rounded
+    const bool at_others =
+        between_feeds && (moves_other_axes(path.legs) || moves_other_axes(last.legs));
+    if (between_feeds && !at_arc && !at_others) // the whole feed counts as rounded
+        return check_joined_after_corner(path);
+    state.corners.left_after = 0.0;
     const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
     if (!limit.rounds()) return;
+    const bool knows_dynamics = states_dynamics(setup.machine);
+    const CornerKind kind = !between_feeds        ? CornerKind::rapids
+                            : state.corners.joins ? CornerKind::joined_feeds
+                                                  : CornerKind::feeds;
+    const std::vector<Leg> before = last.legs_with_joined();
     CornerBlend blend{{limit.distance, limit.distance}, limit.deviation};
-    if (limit.blends())
-        blend = blend_at(last.legs, path.legs, limit.blended, between_feeds, setup.machine);
-    if (between_feeds && !states_dynamics(setup.machine)) {
+    if (limit.blends()) blend = blend_at(before, path.legs, limit.blended, kind, setup.machine);
+    if (at_arc && between_feeds && !knows_dynamics) {
         constexpr double sharp = 0.02; // radians
         if (turn_at(last.legs, path.legs).value_or(0.0) > sharp)
             state.assumptions.insert("LinuxCNC leaves corners of arcs by no more than those of "
@@ -113,13 +136,17 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
                                      "state `rapid` and `acceleration` of its axes");
         return;
     }
+    if (at_others) return check_turning_corner(motion, path, blend);
     if (between_feeds && blend.deviation <= std::min(last.by, off_path)) return;
-    auto region = corner_region(last.legs, path.legs, blend.deviation, blend.reach);
+    auto region = corner_region(before, path.legs, blend.deviation, blend.reach);
     if (!region) return;
-    state.assumptions.insert(
-        corner_assumption(limit, between_feeds, states_dynamics(setup.machine)));
+    state.assumptions.insert(corner_assumption(limit, between_feeds, knows_dynamics));
     if (between_feeds && use(motion) == FluteUse::cutting)
         state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
+    if (kind == CornerKind::joined_feeds && !motion.arc) {
+        state.corners.left_after = blend.reach.after - length_of(path.legs);
+        state.corners.off_after = blend.deviation;
+    }
     if (region->hull.positions.empty()) {
         state.assumptions.insert("corners of rapids at which rotary axes turn are not rounded");
         return;
@@ -128,8 +155,59 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
     const double deviation = bends && limit.distance < infinity ? limit.distance : blend.deviation;
     // Between straight moves the curve is within a triangle that begins and ends at the reach.
-    if (bends && limit.blends()) region->hull.path_error += blend.deviation;
-    note_axis_tolerances({.legs = {region->hull}});
+    if (between_feeds) region->hull.path_error += blend.deviation;
+    region->hull.begin = region->hull.end = 0.0;
+    check_region({region->hull}, region->along, deviation, !(rapid && was));
+}
+
+void BlockRun::check_joined_after_corner(const Path& path) {
+    RoundedCorners& corners = state.corners;
+    if (!(corners.left_after > 0.0)) return;
+    CornerBlend blend;
+    blend.deviation = corners.off_after;
+    std::vector<Leg> along;
+    for (const Leg& leg : path.legs) along.push_back(off_path_by(leg, blend));
+    corners.left_after -= length_of(path.legs);
+    check_region(along, {}, 0.0, true);
+}
+
+void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
+                                    const CornerBlend& blend) {
+    if (motion.tip || blend.deviation == infinity) {
+        state.assumptions.insert("corners at which rotary axes turn are not rounded while the "
+                                 "control follows the tool tip");
+        return;
+    }
+    // Both motions count as this far off anyway.
+    const bool both_turn = moves_other_axes(path.legs) && moves_other_axes(state.corners.last.legs);
+    if (both_turn && blend.turn <= smooth_turn
+        && blend.deviation <= std::min(state.corners.last.by, off_path))
+        return;
+    if (blend.turn == 0.0 && blend.deviation == 0.0) return;
+    const auto is_known = [](const MachineAxis& axis) {
+        return !axis.present || axis.acceleration;
+    };
+    const auto& axes = setup.machine.axes;
+    if (both_turn && !std::all_of(axes.begin(), axes.end(), is_known)) {
+        state.assumptions.insert("where other axes than X, Y and Z move, LinuxCNC passes corners "
+                                 "within 0.01 degrees: it may leave them by more, but the machine "
+                                 "does not state accelerations");
+        return;
+    }
+    state.assumptions.insert("where other axes than X, Y and Z move, LinuxCNC leaves corners by "
+                             "what the tolerance of G64 and the ways of both motions make it; "
+                             "clearances include this");
+    if (use(motion) == FluteUse::cutting)
+        state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
+    std::vector<Leg> both = state.corners.last.legs;
+    both.insert(both.end(), path.legs.begin(), path.legs.end());
+    for (Leg& leg : both) leg = off_path_by(std::move(leg), blend);
+    check_region(both, {}, 0.0, true);
+}
+
+void BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
+                            double deviation, bool may_cut) {
+    note_axis_tolerances({.legs = anywhere});
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
     memory.off_path = deviation + off_by_axes + state.corners.of_stock();
@@ -137,22 +215,20 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
     CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_stock()};
-    region->hull.begin = region->hull.end = 0.0;
-    leg_check(FluteUse::not_cutting, memory)
-        .run(region->hull, result.duration, stock, corner.anywhere);
+    for (const Leg& leg : anywhere)
+        leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.anywhere);
     const bool is_clear =
         std::all_of(corner.anywhere.begin(), corner.anywhere.end(),
                     [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
-    for (const Leg& leg : region->along)
+    for (const Leg& leg : along)
         if (!is_clear)
             leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.along);
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
-    // At the corner between a rapid and a cut, the flutes may already cut.
-    const bool may_cut = !(rapid && was);
     for (const TrackedPair& pair : corner.anywhere) {
+        // At the corner of a cut, the flutes may already, or still, cut.
         if (may_cut && pair.pair == Pair{PartKind::flutes}) continue;
-        auto now = corner.clearance(pair);
+        auto now = corner.clearance(pair, !along.empty());
         if (!now) continue;
         now->time = result.duration;
         merge(static_cast<PairClearance&>(

@@ -88,7 +88,15 @@ Path BlockRun::take_path(const Motion& motion) {
     for (size_t i = 0; i < axis_count; ++i)
         if (!motion.from[i]) state.spread.below[i] = state.spread.above[i] = 0.0;
     const AxisSpread before = state.spread;
-    if (before.none() && !motion.stops_at_contact) return path_of(motion, setup.machine, error);
+    if (before.none() && !motion.stops_at_contact) {
+        const bool turns =
+            !std::equal(motion.from.begin() + 3, motion.from.begin() + 6, motion.to.begin() + 3);
+        const bool is_blended = motion.kind != MotionKind::rapid && state.corners.arcs.rounds();
+        if (!turns || !is_blended || motion.tip) return path_of(motion, setup.machine, error);
+        Motion blended = motion;
+        blended.turn_error += smooth_turn;
+        return path_of(blended, setup.machine, error);
+    }
     is_uncertain = true;
     state.spread = spread_after(motion, before);
     Path path = path_of(motion, before, state.spread, setup.machine, error);

@@ -63,6 +63,10 @@ bool turns_to_cut(const SpindleChange& spindle, const ToolAssembly& tool);
 /// in which rotary axes move are assumed to be in a cutting direction.
 bool cuts_along(const ToolAssembly& tool, const Motion& motion);
 
+/// Whether a tool leaves what it has cut when it goes straight up: flutes and shank get no narrower
+/// upwards, or it only drills. Above the head of a T-slot cutter there may be stock.
+bool leaves_its_cut_upwards(const ToolAssembly& tool);
+
 /// Input of a run for one block.
 struct BlockEvents {
     BlockIndex block{};
