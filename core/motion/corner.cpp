@@ -343,15 +343,36 @@ double least_along(const Rates& motion, const Machine& machine) {
     return least_share * least;
 }
 
+/// The part of a straight motion that is left when it begins to brake: at most half.
+double share_left(std::span<const Leg> legs, double most_override, const Machine& machine) {
+    constexpr double most = 0.5;
+    if (legs.empty() || !has_ends(legs.back())) return most;
+    const Leg& leg = legs.back();
+    const double time = (leg.end - leg.begin) / most_override;
+    double total = 0.0, left = 0.0;
+    for (const Leg& one : legs) total += (one.end - one.begin) / most_override;
+    for (size_t i = 0; i < axis_count; ++i) {
+        const double rate = std::abs(leg.positions.back()[i] - leg.positions.front()[i]) / time;
+        if (rate == 0.0) continue;
+        if (!machine.axes[i].acceleration || !(time > 0.0)) return most;
+        // Of its way, rate times the time, it needs rate^2 / (2 a).
+        left = std::max(left,
+                        cycle * rate / (2.0 * least_share * *machine.axes[i].acceleration) / total);
+    }
+    return std::min(left, most);
+}
+
 /// The blend of motions of which one moves other axes than X, Y and Z.
 CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> after,
                             double tolerance, double most_override, const Machine& machine) {
     const double middle = 0.5 * length_of(before), end = length_of(after);
-    if (before.empty() || after.empty()) return {{middle, end}, middle, 0.5 * turned_on(before)};
-    const auto first = rates_of(before.back()), second = rates_of(after.front());
-    // At most half of the first motion is left when the second one begins, so its path is that far
-    // off.
-    if (!first || !second) return {{middle, end}, middle, 0.5 * turned_on(before)};
+    const auto first = before.empty() ? std::nullopt : rates_of(before.back()),
+               second = after.empty() ? std::nullopt : rates_of(after.front());
+    // Some of the first motion is left when the second one begins, so its path is that far off.
+    if (!first || !second) {
+        const double left = share_left(before, most_override, machine);
+        return {{middle, end}, left * 2.0 * middle, left * turned_on(before)};
+    }
     // It brakes with half of the acceleration from which its speed was computed.
     constexpr double longer = 2.0;
     double cosine = 0.0, square = 0.0, degrees = 0.0;

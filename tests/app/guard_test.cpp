@@ -412,7 +412,7 @@ TEST(GuardedSetups, CannotChangeHowCornersAreRounded) {
     std::string text = setup_text;
     text.insert(text.find("[[machine.axis]]"), "[machine]\nrapid_corner_tolerance = 0\n");
     const app::SetupFile setup = setup_of(text);
-    const std::map<double, uint64_t> last = {{0.0, 2}, {0.1, 3}, {5.0, 1}}; // by the tolerance
+    const std::map<double, uint64_t> last = {{0.0, 2}, {0.1, 3}, {5.0, 2}}; // by the tolerance
     for (const auto& [tolerance, permitted] : last) {
         Machine machine;
         app::Guard guard(setup.setup, *machine.ring, 1.0, 0.1);

@@ -324,9 +324,15 @@ TEST(CornerBlend, LeavesAnAxisHalfWayBackIfTheOthersGoOnWithoutIt) {
     CornerBlend blend = blend_at(turn, go, 0.05, CornerKind::feeds, machine);
     EXPECT_NEAR(blend.turn, std::numbers::pi / 4.0, 1e-12);
     EXPECT_EQ(blend.deviation, 0.0);
+    // From 48 mm/s with 225 mm/s2.
     blend = blend_at(go, turn, 0.05, CornerKind::feeds, machine);
     EXPECT_EQ(blend.turn, 0.0);
-    EXPECT_NEAR(blend.deviation, 20.0, 1e-12);
+    EXPECT_NEAR(blend.deviation, 1.05 * 48.0 * 48.0 / 450.0, 1e-9);
+    // From 108 degrees/s with 450 degrees/s2.
+    Machine other = machine;
+    other.axes[3].acceleration = 1000.0;
+    blend = blend_at(turn, go, 0.05, CornerKind::feeds, other);
+    EXPECT_NEAR(blend.turn, 1.05 * 108.0 * 108.0 / 900.0 * std::numbers::pi / 180.0, 1e-9);
 }
 
 TEST(CornerBlend, OfAxesThatMoveWithTheOthersIsWhatTheyChangeDifferently) {

@@ -178,6 +178,10 @@ TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
         axis.side = Side::tool;
         axis.carrier = setup.machine.spindle;
         setup.machine.spindle = link_of(3);
+        for (size_t i = 0; i < 4; ++i) {
+            setup.machine.axes[i].rapid = 10'000.0;
+            setup.machine.axes[i].acceleration = i == 3 ? 5.0 : 500.0;
+        }
         const double z = setup.tools.at(ToolNumber{1}).length;
         Corner corner(std::move(setup));
         PathModeChange mode = within(0.02);

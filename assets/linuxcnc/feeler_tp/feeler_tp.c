@@ -474,16 +474,17 @@ static int is_before_arc(void) {
     return 0;
 }
 
-/* Whether the last motion that the planner has may have begun: two may be blended with each other. What
- * is passed on after rest only begins in the next cycle. */
-static int was_at_rest;
-static int may_have_begun(TP_STRUCT *tp) { return !was_at_rest && real_tpQueueDepth(tp) <= 2; }
+/* Whether some of the last motion that the planner has was made. */
+static int has_last_begun(TC_QUEUE_STRUCT const *queue) {
+    if (queue->_len == 0) return 0;
+    return queue->queue[(queue->end - 1 + queue->size) % queue->size].progress > 0.0;
+}
 
 /* LinuxCNC 2.9 may replace a short line by an arc between its neighbours even if it has begun, and then
  * all that follows is displaced by what was made of it. Such a line is blended without an arc. */
 static int pass_on_line(TP_STRUCT *tp, struct call const *c) {
     int const makes_arcs = settings ? settings->arcBlendEnable : 0;
-    if (settings && may_have_begun(tp)) settings->arcBlendEnable = 0;
+    if (settings && has_last_begun(&tp->queue)) settings->arcBlendEnable = 0;
     int const result = real_tpAddLine(tp, c->end, c->type, c->vel, c->max_vel, c->acc, c->enables,
                                       c->at_speed, c->index, c->tag);
     if (settings) settings->arcBlendEnable = makes_arcs;
@@ -570,7 +571,6 @@ static uint64_t last_permitted(void) {
 static void release_permitted(TP_STRUCT *tp) {
     uint64_t const permitted = last_permitted();
     feeler_store(&ring->external, (uint64_t)has_external_offset());
-    was_at_rest = real_tpIsDone(tp);
     int motions = 0;
     while (call_count > 0 && motions < 8 && !real_tcqFull(&tp->queue)) {
         struct call *c = call_at(0);

@@ -102,6 +102,7 @@ namespace {
 /// A leg beside a corner, whose bodies are off as the control leaves it.
 Leg off_path_by(Leg leg, const CornerBlend& blend) {
     leg.path_error += blend.deviation;
+    leg.lasting_error += blend.deviation;
     leg.turn_error += blend.turn;
     return leg;
 }
@@ -155,7 +156,7 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
     const double deviation = bends && limit.distance < infinity ? limit.distance : blend.deviation;
     // Between straight moves the curve is within a triangle that begins and ends at the reach.
-    if (between_feeds) region->hull.path_error += blend.deviation;
+    if (between_feeds) region->hull = off_path_by(std::move(region->hull), blend);
     region->hull.begin = region->hull.end = 0.0;
     check_region({region->hull}, region->along, deviation, !(rapid && was));
 }
@@ -178,22 +179,22 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
                                  "control follows the tool tip");
         return;
     }
-    // Both motions count as this far off anyway.
-    const bool both_turn = moves_other_axes(path.legs) && moves_other_axes(state.corners.last.legs);
-    if (both_turn && blend.turn <= smooth_turn
-        && blend.deviation <= std::min(state.corners.last.by, off_path))
-        return;
     if (blend.turn == 0.0 && blend.deviation == 0.0) return;
     const auto is_known = [](const MachineAxis& axis) {
         return !axis.present || axis.acceleration;
     };
     const auto& axes = setup.machine.axes;
-    if (both_turn && !std::all_of(axes.begin(), axes.end(), is_known)) {
-        state.assumptions.insert("where other axes than X, Y and Z move, LinuxCNC passes corners "
+    if (!std::all_of(axes.begin(), axes.end(), is_known)) {
+        state.assumptions.insert("LinuxCNC passes corners at which other axes than X, Y and Z move "
                                  "within 0.01 degrees: it may leave them by more, but the machine "
                                  "does not state accelerations");
         return;
     }
+    // Both motions count as this far off anyway.
+    const bool both_turn = moves_other_axes(path.legs) && moves_other_axes(state.corners.last.legs);
+    if (blend.turn <= (both_turn ? smooth_turn : 0.0)
+        && blend.deviation <= std::min(state.corners.last.by, off_path))
+        return;
     state.assumptions.insert("where other axes than X, Y and Z move, LinuxCNC leaves corners by "
                              "what the tolerance of G64 and the ways of both motions make it; "
                              "clearances include this");
