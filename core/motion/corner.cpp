@@ -126,12 +126,12 @@ struct CornerSide {
     bool is_arc() const { return plane_normal.has_value(); }
 };
 
-/// The greatest speed on legs, mm/s.
+/// The greatest speed on legs, mm/s; infinity if it is not known.
 double speed_on(std::span<const Leg> legs) {
     double speed = 0.0;
     for (const Leg& leg : legs)
         if (leg.end > leg.begin) speed = std::max(speed, length_of(leg) / (leg.end - leg.begin));
-    return speed;
+    return speed > 0.0 ? speed : infinity;
 }
 
 /// The directions of an arc at a fraction of its angle, and its least radius. LinuxCNC leaves out
@@ -234,6 +234,15 @@ double least_acceleration(const Machine& machine) {
     return least;
 }
 
+/// The greatest acceleration of any direction of the linear axes, mm/s2, likewise.
+double greatest_acceleration(const Machine& machine) {
+    double square = 0.0;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (machine.axes[i].present && !is_rotary(i))
+            square += *machine.axes[i].acceleration * *machine.axes[i].acceleration;
+    return std::sqrt(square);
+}
+
 /// The blend of a machine that states its dynamics, in X, Y and Z.
 class KnownBlend {
 public:
@@ -246,7 +255,8 @@ public:
           v2_(speeds[1]),
           a1_(accelerations_of(first, machine).least),
           a2_(accelerations_of(second, machine).most),
-          slowest_(least_acceleration(machine)) {
+          slowest_(least_acceleration(machine)),
+          strongest_(greatest_acceleration(machine)) {
         // Of an arc after the corner, LinuxCNC takes a direction that leans to its centre.
         if (second.is_arc())
             lean_ =
@@ -277,6 +287,14 @@ public:
 
     /// Whatever the turn. Circles reach farther, within the tolerance.
     CornerBlend at_any_turn(double middle, double end) const {
+        KnownBlend any = *this;
+        any.a1_ = std::min(a1_, least_share * slowest_);
+        any.a2_ = std::max(a2_, strongest_);
+        return any.at_turn_of_joined(middle, end);
+    }
+
+private:
+    CornerBlend at_turn_of_joined(double middle, double end) const {
         CornerBlend blend = from(middle, end);
         const double unseen = 0.5 * (lean_ + slope_of(first_) + slope_of(second_)) + least_angle;
         blend.deviation +=
@@ -287,7 +305,6 @@ public:
         return blend;
     }
 
-private:
     /// The reach of a blend that begins to brake `most` before the corner at the earliest, and how
     /// far the curves of arcs are from their tangents.
     CornerBlend from(double most, double end) const {
@@ -300,7 +317,7 @@ private:
     }
 
     const CornerSide &first_, &second_;
-    double tolerance_, v1_, v2_, a1_, a2_, slowest_, lean_ = 0.0;
+    double tolerance_, v1_, v2_, a1_, a2_, slowest_, strongest_, lean_ = 0.0;
 };
 
 /// A straight motion of any axes, for one millimetre in X, Y and Z.
@@ -418,14 +435,10 @@ double most_reach_of_speed(const Machine& machine) {
 }
 
 double most_blend_deviation(const Machine& machine) {
-    double ratio = infinity;
-    if (states_dynamics(machine)) {
-        double square = 0.0;
-        for (size_t i = 0; i < axis_count; ++i)
-            if (machine.axes[i].present && !is_rotary(i))
-                square += *machine.axes[i].acceleration * *machine.axes[i].acceleration;
-        ratio = std::sqrt(square) / (least_share * least_acceleration(machine));
-    }
+    const double ratio =
+        states_dynamics(machine)
+            ? greatest_acceleration(machine) / (least_share * least_acceleration(machine))
+            : infinity;
     // It begins to brake 2 T / sin(turn / 2) before the corner.
     return cycle * 2.0 * blend_share(ratio);
 }

@@ -175,7 +175,8 @@ struct BlockRun {
     /// The corner before lines that may be joined with these.
     void check_joined_after_corner(const Path& path);
     /// A corner between feeds of which one moves other axes than X, Y and Z.
-    void check_turning_corner(const Motion& motion, const Path& path, const CornerBlend& blend);
+    void check_turning_corner(const Motion& motion, const Path& path,
+                              const std::vector<Leg>& before, const CornerBlend& blend);
     /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the
     /// path `along` it, if that is stated. `may_cut`: the flutes may meet the stock.
     void check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,

@@ -49,13 +49,12 @@ std::string corner_assumption(const CornerLimit& limit, bool between_feeds, bool
         return fmt::format("corners between rapids may be rounded by up to {:.4g} mm; clearances "
                            "include this",
                            limit.deviation);
-    return fmt::format(
-        "corners between rapids are rounded as far as {} (G64 without P); "
-        "clearances include this",
-        knows_dynamics
-            ? "the speeds and accelerations of the machine make it"
-            : "to the middle of the move before them, because speeds and accelerations of "
-              "the axes are not stated");
+    return fmt::format("corners between rapids are rounded as far as {} (G64 without P); "
+                       "clearances include this",
+                       knows_dynamics ? "the speeds and accelerations of the machine make it"
+                                      : "to the middle of the first and the end of the second, "
+                                        "because speeds and accelerations of "
+                                        "the axes are not stated");
 }
 
 } // namespace
@@ -111,14 +110,15 @@ Leg off_path_by(Leg leg, const CornerBlend& blend) {
 
 void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const CornerStart& last = state.corners.last;
+    if (!last.kind) state.corners.left_after = 0.0;
     if (!last.kind) return;
     const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
     const bool between_feeds = !rapid && !was;
     const bool at_arc = motion.arc || last.is_arc;
     const bool at_others =
         between_feeds && (moves_other_axes(path.legs) || moves_other_axes(last.legs));
-    if (between_feeds && !at_arc && !at_others) // the whole feed counts as rounded
-        return check_joined_after_corner(path);
+    // The whole feed counts as rounded, but for what is left of a corner before it.
+    if (between_feeds && !at_arc && !at_others) return check_joined_after_corner(path);
     state.corners.left_after = 0.0;
     const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
     if (!limit.rounds()) return;
@@ -129,15 +129,16 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const std::vector<Leg> before = last.legs_with_joined();
     CornerBlend blend{{limit.distance, limit.distance}, limit.deviation};
     if (limit.blends()) blend = blend_at(before, path.legs, limit.blended, kind, setup.machine);
+    if (at_others) return check_turning_corner(motion, path, before, blend);
     if (at_arc && between_feeds && !knows_dynamics) {
         constexpr double sharp = 0.02; // radians
-        if (turn_at(last.legs, path.legs).value_or(0.0) > sharp)
-            state.assumptions.insert("LinuxCNC leaves corners of arcs by no more than those of "
-                                     "lines: it may leave them by more, but the machine does not "
-                                     "state `rapid` and `acceleration` of its axes");
+        if (turn_at(last.legs, path.legs).value_or(infinity) > sharp)
+            state.assumptions.insert("it is assumed that LinuxCNC leaves corners of arcs by no "
+                                     "more than those of lines, because the machine does not state "
+                                     "`rapid` and `acceleration` of its axes; it may leave them by "
+                                     "more");
         return;
     }
-    if (at_others) return check_turning_corner(motion, path, blend);
     if (between_feeds && blend.deviation <= std::min(last.by, off_path)) return;
     auto region = corner_region(before, path.legs, blend.deviation, blend.reach);
     if (!region) return;
@@ -173,7 +174,7 @@ void BlockRun::check_joined_after_corner(const Path& path) {
 }
 
 void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
-                                    const CornerBlend& blend) {
+                                    const std::vector<Leg>& before, const CornerBlend& blend) {
     if (motion.tip || blend.deviation == infinity) {
         state.assumptions.insert("corners at which rotary axes turn are not rounded while the "
                                  "control follows the tool tip");
@@ -185,9 +186,9 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
     };
     const auto& axes = setup.machine.axes;
     if (!std::all_of(axes.begin(), axes.end(), is_known)) {
-        state.assumptions.insert("LinuxCNC passes corners at which other axes than X, Y and Z move "
-                                 "within 0.01 degrees: it may leave them by more, but the machine "
-                                 "does not state accelerations");
+        state.assumptions.insert("it is assumed that LinuxCNC passes corners at which other axes "
+                                 "than X, Y and Z move within 0.01 degrees, because the machine "
+                                 "does not state all accelerations; it may leave them by more");
         return;
     }
     // Both motions count as this far off anyway.
@@ -200,7 +201,7 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
                              "clearances include this");
     if (use(motion) == FluteUse::cutting)
         state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
-    std::vector<Leg> both = state.corners.last.legs;
+    std::vector<Leg> both = before;
     both.insert(both.end(), path.legs.begin(), path.legs.end());
     for (Leg& leg : both) leg = off_path_by(std::move(leg), blend);
     check_region(both, {}, 0.0, true);
