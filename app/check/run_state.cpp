@@ -58,6 +58,7 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     digest.add(corners.last.by);
     digest.add(corners.left_after);
     digest.add(corners.off_after);
+    digest.add(corners.turn_after);
     for (const core::AxisValues& position : corners.last.joined)
         for (const double value : position) digest.add(value);
     digest.add(corners.last.kind ? uint64_t(*corners.last.kind) + 1 : 0);

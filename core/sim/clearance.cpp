@@ -197,6 +197,7 @@ void RoundedCorners::end(MotionKind kind, bool is_arc) {
     const bool is_feed = kind != MotionKind::rapid;
     last.kind = kind;
     last.is_arc = is_arc;
+    last.joins = joins;
     last.legs.clear();
     last.by = !is_feed ? 0.0 : is_arc ? by_arc : by;
     last.rapids = rapids;

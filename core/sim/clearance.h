@@ -134,6 +134,7 @@ struct CornerStart {
 
     std::optional<MotionKind> kind; // empty: the machine comes from rest
     bool is_arc = false;
+    bool joins = false;              // it may be joined with straight feeds
     std::vector<Leg> legs;           // its last legs, if the corner after it may be rounded
     std::vector<AxisValues> joined;  // starts of the lines before it that may be joined with it
     double by = 0.0;                 // of a feed: how far it deviates
@@ -162,8 +163,9 @@ struct RoundedCorners {
     CornerLimit arcs;
     bool joins = false;          // straight feeds are joined
     double reach_of_speed = 0.0; // s2/mm: times the square of a speed, twice where it is rounded
-    // The rest of a rounded corner, in feeds that may be joined to the one after it.
-    double left_after = 0.0, off_after = 0.0; // its length and its deviation, mm
+    // The rest of a rounded corner, in feeds that may be joined to the one after it: its length and
+    // its deviation, mm, and that of the rotary axes, radians.
+    double left_after = 0.0, off_after = 0.0, turn_after = 0.0;
     CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
@@ -181,7 +183,7 @@ struct RoundedCorners {
 
     /// Records a cutting feed.
     void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc) {
-        if (by == 0.0) return;
+        if (of_feed(is_arc) == 0.0) return;
         by_several = by_several || (tool && tool != by_tool);
         tool = by_tool;
         mode_of_cuts = std::max(mode_of_cuts, by);

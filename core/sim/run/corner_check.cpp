@@ -123,9 +123,9 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
     if (!limit.rounds()) return;
     const bool knows_dynamics = states_dynamics(setup.machine);
-    const CornerKind kind = !between_feeds        ? CornerKind::rapids
-                            : state.corners.joins ? CornerKind::joined_feeds
-                                                  : CornerKind::feeds;
+    const CornerKind kind = !between_feeds                      ? CornerKind::rapids
+                            : state.corners.joins || last.joins ? CornerKind::joined_feeds
+                                                                : CornerKind::feeds;
     const std::vector<Leg> before = last.legs_with_joined();
     CornerBlend blend{{limit.distance, limit.distance}, limit.deviation};
     if (limit.blends()) blend = blend_at(before, path.legs, limit.blended, kind, setup.machine);
@@ -148,6 +148,7 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
     if (kind == CornerKind::joined_feeds && !motion.arc) {
         state.corners.left_after = blend.reach.after - length_of(path.legs);
         state.corners.off_after = blend.deviation;
+        state.corners.turn_after = 0.0;
     }
     if (region->hull.positions.empty()) {
         state.assumptions.insert("corners of rapids at which rotary axes turn are not rounded");
@@ -167,6 +168,7 @@ void BlockRun::check_joined_after_corner(const Path& path) {
     if (!(corners.left_after > 0.0)) return;
     CornerBlend blend;
     blend.deviation = corners.off_after;
+    blend.turn = corners.turn_after;
     std::vector<Leg> along;
     for (const Leg& leg : path.legs) along.push_back(off_path_by(leg, blend));
     corners.left_after -= length_of(path.legs);
@@ -201,6 +203,15 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
                              "clearances include this");
     if (use(motion) == FluteUse::cutting)
         state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
+    const std::vector<Leg>& last = state.corners.last.legs;
+    if (state.corners.joins && !moves_other_axes(path.legs) && !last.empty()) {
+        // What is left, at most half, takes at most the time of the whole motion.
+        const double time = last.back().end - last.front().begin, length = length_of(path.legs);
+        state.corners.left_after =
+            path.duration > 0.0 ? length / path.duration * time - length : 0.0;
+        state.corners.off_after = blend.deviation;
+        state.corners.turn_after = blend.turn;
+    }
     std::vector<Leg> both = before;
     both.insert(both.end(), path.legs.begin(), path.legs.end());
     for (Leg& leg : both) leg = off_path_by(std::move(leg), blend);
