@@ -197,6 +197,18 @@ TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
             {Motion{.kind = MotionKind::feed, .from = tilted, .to = upright, .feed = 600.0}});
         corner.give({Motion{.kind = MotionKind::feed, .from = upright, .to = past, .feed = 600.0}});
         EXPECT_EQ(corner.verdicts.back(), blends ? Verdict::undecided : Verdict::clear);
+        // LinuxCNC joins a short line with the next one, which begins while the axis still turns.
+        mode.joining = 0.02;
+        if (blends) corner.give({mode});
+        const AxisPosition near = {-59.95, 0, z, 0};
+        const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
+            corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 600.0}});
+        };
+        corner.give({Motion{.kind = MotionKind::rapid, .from = tilted, .to = tilted}});
+        feed(tilted, upright);
+        feed(upright, near);
+        feed(near, past);
+        EXPECT_EQ(corner.verdicts.back(), blends ? Verdict::undecided : Verdict::clear);
     }
 }
 
