@@ -58,13 +58,13 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     digest.add(corners.last.by);
     digest.add(corners.left_after);
     digest.add(corners.off_after);
-    digest.add(corners.turn_after);
     for (const core::AxisValues& position : corners.last.joined)
         for (const double value : position) digest.add(value);
     digest.add(corners.last.kind ? uint64_t(*corners.last.kind) + 1 : 0);
-    for (const core::Leg& leg : corners.last.legs)
-        for (const core::AxisValues& position : leg.positions)
-            for (const double value : position) digest.add(value);
+    for (const auto* legs : {&corners.last.legs, &corners.last.rest})
+        for (const core::Leg& leg : *legs)
+            for (const core::AxisValues& position : leg.positions)
+                for (const double value : position) digest.add(value);
     digest.add(corners.tool ? uint64_t(core::value_of(*corners.tool)) + 1 : 0);
     digest.add(uint64_t(corners.by_several));
 }

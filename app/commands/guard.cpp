@@ -64,6 +64,9 @@ core::Result<IniFile> known_ini(const std::string& path) {
                                fmt::format("the guard does not know the kinematics {}: the manual "
                                            "has those that it knows, under \"The guard\"",
                                            ini.kinematics));
+    if (has_slow_servo(ini))
+        return core::fail_file(path, "[EMCMOT] SERVO_PERIOD is longer than 1,000,000 ns, and only "
+                                     "up to that it is known how LinuxCNC rounds corners");
     return ini;
 }
 

@@ -454,6 +454,12 @@ std::string complete_machine(core::Machine& machine, const gcode::Environment& e
     return note;
 }
 
+bool has_slow_servo(const IniFile& ini) {
+    constexpr double longest = 1e6; // ns
+    const auto period = ini.values.find("_ini[emcmot]servo_period");
+    return period != ini.values.end() && period->second > longest;
+}
+
 std::vector<std::string> split_search_path(const std::string& text) {
     return split_folders(text, core::platform::list_separator());
 }

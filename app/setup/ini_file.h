@@ -73,6 +73,10 @@ bool has_axes_of_kinematics(const core::Machine& machine, const gcode::Environme
 std::string complete_machine(core::Machine& machine, const gcode::Environment& environment,
                              bool with_positions);
 
+/// Whether the servo period of an ini file is longer than 1 ms: only up to this it is known how
+/// LinuxCNC rounds corners.
+bool has_slow_servo(const IniFile& ini);
+
 /// Splits a list of folders at ':', or at ';' on Windows.
 std::vector<std::string> split_search_path(const std::string& text);
 

@@ -128,6 +128,10 @@ core::Result<ProgramSettings> with_ini(ProgramSettings settings, gcode::Environm
         notes.push_back(fmt::format("{}: LOCKING_INDEXER of {} is ignored: in a block with several "
                                     "axes, it turns with the others instead of before them",
                                     settings.ini, ini.locking_indexers));
+    if (has_slow_servo(ini))
+        notes.push_back(fmt::format("{}: SERVO_PERIOD is longer than 1 ms, so LinuxCNC may leave "
+                                    "corners by more than is taken into account",
+                                    settings.ini));
     stated.machine_unit = ini.machine_unit;
     if (!settings.ignores_tables) {
         stated.parameters = existing(ini.parameters, settings, notes);

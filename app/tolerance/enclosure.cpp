@@ -99,6 +99,7 @@ struct Enclosure::Run {
     std::map<double, core::Setup> doubtful = {}; // by the doubt
     bool was_exact = false;
     bool last_is_exact = false; // the motion before, at which a corner begins
+    bool last_moves_others = false;
 };
 
 Enclosure::Enclosure(const PreparedCheck& check, const core::Setup& base,
@@ -454,16 +455,27 @@ std::optional<LimitingPair> Enclosure::judge_corner(Run& run, size_t event,
     const bool exact = is_exact(event, run.frame);
     if (exact && motion.from == motion.to && !motion.arc) return std::nullopt; // it does not move
     const bool last_is_exact = std::exchange(run.last_is_exact, exact);
-    const core::CornerStart last = run.state.corners.last;
-    if (exact == last_is_exact || !last.kind) return std::nullopt;
-    // The path of the motion before is not known here: the simulator is not to use it.
-    if (exact) run.state.corners.last = {};
+    const bool others =
+                   !std::equal(motion.from.begin() + 3, motion.from.end(), motion.to.begin() + 3),
+               last_others = std::exchange(run.last_moves_others, others);
+    const core::RoundedCorners& corners = run.state.corners;
+    const core::CornerStart last = corners.last;
+    if (!last.kind) return std::nullopt;
     const bool rapid = motion.kind == core::MotionKind::rapid,
                was_rapid = *last.kind == core::MotionKind::rapid;
-    if (!rapid && !was_rapid) { // the whole feed counts as rounded
-        if (!last.arcs.rounds() || !(motion.arc || last.is_arc)) return std::nullopt;
-        return LimitingPair{.event = event, .tool = run.state.tool, .pair = {}, .missing = {}};
+    const bool is_one_kind = exact == last_is_exact;
+    if (!rapid && !was_rapid) {
+        // The whole feed counts as rounded, but next to arcs and where other axes than X, Y and Z
+        // move the simulator needs the path of the motion before, and so it does after them.
+        const bool is_rounded_more = motion.arc || last.is_arc || others || last_others;
+        if ((is_rounded_more && last.arcs.rounds() && !(is_one_kind && !last.legs.empty()))
+            || (corners.left_after > 0.0 && !(is_one_kind && !has_hull(event, motion, run.frame))))
+            return LimitingPair{.event = event, .tool = run.state.tool, .pair = {}, .missing = {}};
     }
+    if (is_one_kind) return std::nullopt;
+    // The path of the motion before is not known here: the simulator is not to use it.
+    if (exact) run.state.corners.last = {};
+    if (!rapid && !was_rapid) return std::nullopt;
     const core::CornerLimit& limit = rapid && was_rapid ? last.rapids : last.mixed;
     if (!limit.rounds()) return std::nullopt;
     const std::vector<core::Leg> legs =

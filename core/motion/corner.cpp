@@ -94,12 +94,38 @@ double length_of(std::span<const Leg> legs) {
     return length;
 }
 
-bool states_dynamics(const Machine& machine) {
-    for (size_t i = 0; i < axis_count; ++i) {
-        const MachineAxis& axis = machine.axes[i];
-        if (axis.present && !is_rotary(i) && !(axis.rapid && axis.acceleration)) return false;
-    }
+// LinuxCNC 2.9, emccanon.cc: ARC_FEED, chord_deviation.
+std::vector<Leg> lines_of_arc(const Motion& motion, const Path& path, double joining) {
+    if (!(joining > 0.0) || !motion.arc || motion.arc->normal != 2 || path.legs.empty()) return {};
+    constexpr double rounding = 1.0 + 1e-9;
+    const ArcPath& arc = *motion.arc;
+    const AxisValues &from = path.legs.front().positions.front(),
+                     &to = path.legs.back().positions.back();
+    const double radius = core::hypot(from[0] - arc.centre.x, from[1] - arc.centre.y);
+    if (std::abs(arc.angle) > 2.0 * std::numbers::pi * rounding
+        || radius * (1.0 - core::cos(0.5 * arc.angle)) > joining * rounding)
+        return {};
+    AxisValues middle = from;
+    for (size_t i = 0; i < axis_count; ++i) middle[i] = 0.5 * (from[i] + to[i]);
+    const double cosine = core::cos(0.5 * arc.angle), sine = core::sin(0.5 * arc.angle);
+    const double x = from[0] - arc.centre.x, y = from[1] - arc.centre.y;
+    middle[0] = arc.centre.x + cosine * x - sine * y;
+    middle[1] = arc.centre.y + sine * x + cosine * y;
+    const double half = 0.5 * path.duration;
+    return {{.positions = {from, middle}, .begin = 0.0, .end = half},
+            {.positions = {middle, to}, .begin = half, .end = path.duration}};
+}
+
+bool states_accelerations(const Machine& machine) {
+    for (size_t i = 0; i < axis_count; ++i)
+        if (machine.axes[i].present && !is_rotary(i) && !machine.axes[i].acceleration) return false;
     return true;
+}
+
+bool states_dynamics(const Machine& machine) {
+    for (size_t i = 0; i < axis_count; ++i)
+        if (machine.axes[i].present && !is_rotary(i) && !machine.axes[i].rapid) return false;
+    return states_accelerations(machine);
 }
 
 double rounding_reach(double deviation, double turn) {
@@ -338,16 +364,6 @@ std::optional<Rates> rates_of(const Leg& leg) {
     return motion;
 }
 
-/// The sum of what the rotary axes turn on legs, radians.
-double turned_on(std::span<const Leg> legs) {
-    double degrees = 0.0;
-    for (const Leg& leg : legs)
-        for (size_t i = 0; i < axis_count; ++i)
-            if (is_rotary(i) && !leg.positions.empty())
-                degrees += std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
-    return degrees / degrees_per_radian;
-}
-
 /// The least acceleration along a straight motion that is blended, mm/s2; 0 if an axis that it
 /// moves does not state it.
 double least_along(const Rates& motion, const Machine& machine) {
@@ -388,7 +404,7 @@ CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> af
     // Some of the first motion is left when the second one begins, so its path is that far off.
     if (!first || !second) {
         const double left = share_left(before, most_override, machine);
-        return {{middle, end}, left * 2.0 * middle, left * turned_on(before)};
+        return {{middle, end}, left * 2.0 * middle, left * turned_on(before), left};
     }
     // It brakes with half of the acceleration from which its speed was computed.
     constexpr double longer = 2.0;
@@ -407,7 +423,10 @@ CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> af
         both = std::min(both, longer * cycle * 2.0 * tolerance / core::sin(half - least_angle));
     const double least = least_along(*first, machine), speed = most_override * first->speed;
     if (least > 0.0) both = std::min(both, cycle * speed * speed / (2.0 * least));
-    return {{middle, end}, std::sqrt(square) * both, degrees / degrees_per_radian * both};
+    return {{middle, end},
+            std::sqrt(square) * both,
+            degrees / degrees_per_radian * both,
+            middle > 0.0 ? std::min(0.5, both / (2.0 * middle)) : 0.5};
 }
 
 } // namespace
@@ -422,6 +441,55 @@ bool moves_other_axes(std::span<const Leg> legs) {
     });
 }
 
+double turned_on(std::span<const Leg> legs) {
+    double degrees = 0.0;
+    for (const Leg& leg : legs)
+        for (size_t i = 0; i < axis_count; ++i)
+            if (is_rotary(i) && !leg.positions.empty())
+                degrees += std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
+    return degrees / degrees_per_radian;
+}
+
+std::vector<Leg> last_part(std::span<const Leg> legs, double part) {
+    const bool has_times =
+        std::all_of(legs.begin(), legs.end(), [](const Leg& leg) { return leg.end > leg.begin; });
+    const auto size_of = [&](const Leg& leg) {
+        return has_times ? leg.end - leg.begin : length_of(leg);
+    };
+    double left = 0.0;
+    for (const Leg& leg : legs) left += part * size_of(leg);
+    std::vector<Leg> last;
+    for (size_t n = legs.size(); n > 0 && left > 0.0; --n) {
+        const Leg& leg = legs[n - 1];
+        const double size = size_of(leg);
+        last.push_back(size > left ? stretch(leg, 1.0 - left / size, 1.0) : leg);
+        last.back().arc = {};
+        left -= size;
+    }
+    std::reverse(last.begin(), last.end());
+    return last;
+}
+
+std::vector<Leg> displaced(std::span<const Leg> legs, const Leg& rest, double from, double to,
+                           const AxisValues& corner) {
+    const AxisValues &first = rest.positions.front(), &last = rest.positions.back();
+    AxisValues by{};
+    for (size_t i = 0; i < axis_count; ++i)
+        by[i] = first[i] + 0.5 * (from + to) * (last[i] - first[i]) - corner[i];
+    const double half = 0.5 * (to - from), off = half * length_of(rest) + rest.path_error,
+                 turn = half * turned_on({&rest, 1}) + rest.turn_error;
+    std::vector<Leg> all(legs.begin(), legs.end());
+    for (Leg& leg : all) {
+        for (AxisValues& position : leg.positions)
+            for (size_t i = 0; i < axis_count; ++i) position[i] += by[i];
+        leg.path_error += off;
+        leg.lasting_error += off;
+        leg.turn_error += turn;
+        leg.arc = {};
+    }
+    return all;
+}
+
 std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> after) {
     const auto first = side_of(before, true), second = side_of(after, false);
     if (!first || !second) return std::nullopt;
@@ -429,14 +497,14 @@ std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> 
 }
 
 double most_reach_of_speed(const Machine& machine) {
-    if (!states_dynamics(machine)) return 0.0;
+    if (!states_accelerations(machine)) return 0.0;
     return cycle * feed_override * feed_override
            / (2.0 * share_along_arc * least_share * least_acceleration(machine));
 }
 
 double most_blend_deviation(const Machine& machine) {
     const double ratio =
-        states_dynamics(machine)
+        states_accelerations(machine)
             ? greatest_acceleration(machine) / (least_share * least_acceleration(machine))
             : infinity;
     // It begins to brake 2 T / sin(turn / 2) before the corner.
@@ -460,14 +528,15 @@ CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, do
         blend.deviation = std::min(blend.deviation, most_blend_deviation(machine) * tolerance);
     const auto first = side_of(before, true), second = side_of(after, false);
     if (!first || !second) return blend;
-    if (!states_dynamics(machine)) {
+    const bool is_rapid = kind == CornerKind::rapids;
+    if (is_rapid ? !states_dynamics(machine) : !states_accelerations(machine)) {
         const double half = 0.5 * turn_between(*first, *second);
         if (is_straight && !is_joined && half > least_angle)
             blend.reach.before =
                 std::min(middle, cycle * 2.0 * tolerance / core::sin(half - least_angle));
         return blend;
     }
-    const double most_override = kind == CornerKind::rapids ? 1.0 : feed_override;
+    const double most_override = is_rapid ? 1.0 : feed_override;
     const KnownBlend known(*first, *second, tolerance,
                            {most_override * speed_on(before), most_override * speed_on(after)},
                            machine);

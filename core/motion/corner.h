@@ -23,7 +23,14 @@ double rounding_reach(double deviation, double turn);
 /// Length of a path in the linear axes, mm; for boxes of possible positions, at least that.
 double length_of(std::span<const Leg> legs);
 
-/// Whether the speeds and accelerations of all linear axes are known.
+/// The two lines that LinuxCNC makes of an arc if they are within `joining` of it, mm; otherwise
+/// empty. `path`: that of the motion.
+std::vector<Leg> lines_of_arc(const Motion& motion, const Path& path, double joining);
+
+/// Whether the accelerations of all linear axes are known.
+bool states_accelerations(const Machine& machine);
+
+/// Whether their speeds are known, too.
 bool states_dynamics(const Machine& machine);
 
 /// How far from a corner the control leaves the motion before it and the one after it, mm.
@@ -37,6 +44,7 @@ struct CornerBlend {
     CornerReach reach;
     double deviation = 0.0; // greatest distance from the path, mm
     double turn = 0.0;      // greatest sum of what all rotary axes are off, radians
+    double left = 0.5;      // the part of the first motion that is left when the second one begins
 };
 
 /// Which motions meet at a corner.
@@ -49,9 +57,10 @@ enum class CornerKind : uint8_t {
 /// The blend between two motions, given by their legs.
 ///
 /// `tolerance`: from which the control computes where it begins to brake, mm; infinity: as soon as
-/// accelerations allow. Where the machine states speeds and accelerations, the blend reaches no
-/// farther than they make it, and never beyond the middle of the motion before the corner. Next to
-/// arcs, and where other axes than X, Y and Z move, the tolerance alone says nothing.
+/// accelerations allow. Where the machine states accelerations, and for rapids also speeds, the
+/// blend reaches no farther than they make it, and never beyond the middle of the motion before the
+/// corner. Next to arcs, and where other axes than X, Y and Z move, the tolerance alone says
+/// nothing.
 ///
 /// Source: docs/decisions/distance.md, "Corners of LinuxCNC".
 CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, double tolerance,
@@ -60,12 +69,23 @@ CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, do
 /// Whether other axes than X, Y and Z move on legs.
 bool moves_other_axes(std::span<const Leg> legs);
 
+/// The sum of what the rotary axes turn on legs, radians.
+double turned_on(std::span<const Leg> legs);
+
+/// The last part of a motion, as straight legs; by time, or by length if the legs have no times.
+std::vector<Leg> last_part(std::span<const Leg> legs, double part);
+
+/// Legs at a corner while the motion before it ends: `rest` is left of that, from one of its
+/// fractions to another one. `corner`: where it ends.
+std::vector<Leg> displaced(std::span<const Leg> legs, const Leg& rest, double from, double to,
+                           const AxisValues& corner);
+
 /// The change of direction between two motions, given by their legs, radians; empty if a direction
 /// is not known.
 std::optional<double> turn_at(std::span<const Leg> before, std::span<const Leg> after);
 
 /// How far before a corner a feed is blended at most, divided by the square of its speed, s2/mm;
-/// 0 if the machine does not state its dynamics.
+/// 0 if the machine does not state its accelerations.
 double most_reach_of_speed(const Machine& machine);
 
 /// The greatest deviation of a blend between straight motions, as a multiple of its tolerance.

@@ -164,7 +164,7 @@ CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
 void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
     corners.by = corners.by_arc = 0.0;
     corners.rapids = corners.mixed = corners.arcs = {};
-    corners.joins = change.joining > 0.0;
+    corners.joining = change.joining;
     corners.left_after = corners.off_after = 0.0;
     corners.unknown = corners.unknown_rapids = false;
     if (change.blending != Blending::continuous) return;
@@ -197,7 +197,7 @@ void RoundedCorners::end(MotionKind kind, bool is_arc) {
     const bool is_feed = kind != MotionKind::rapid;
     last.kind = kind;
     last.is_arc = is_arc;
-    last.joins = joins;
+    last.joins = joining > 0.0;
     last.legs.clear();
     last.by = !is_feed ? 0.0 : is_arc ? by_arc : by;
     last.rapids = rapids;
@@ -207,27 +207,30 @@ void RoundedCorners::end(MotionKind kind, bool is_arc) {
 
 namespace {
 
-/// Keeps where the lines begin with which a line may be joined, as far as the corner at its end may
-/// reach.
-void note_joined(RoundedCorners& corners, const Motion& motion, const Path& path) {
+/// Keeps where the lines begin with which those of a motion may be joined, as far as the corner at
+/// their end may reach.
+void note_joined(RoundedCorners& corners, const Motion& motion, const std::vector<Leg>& legs) {
     CornerStart& last = corners.last;
-    const auto is_line = [](const std::vector<Leg>& legs) {
-        return legs.size() == 1 && legs[0].straight && legs[0].positions.size() == 2
-               && !legs[0].arc.motion;
+    const auto are_lines = [](const std::vector<Leg>& all) {
+        return !all.empty() && all.size() <= 2
+               && std::all_of(all.begin(), all.end(), [](const Leg& leg) {
+                      return leg.straight && leg.positions.size() == 2 && !leg.arc.motion;
+                  });
     };
-    if (!corners.joins || motion.kind == MotionKind::rapid || !last.arcs.rounds() || last.is_arc
-        || !is_line(last.legs) || !is_line(path.legs)) {
+    if (corners.joining == 0.0 || motion.kind == MotionKind::rapid || !last.arcs.rounds()
+        || last.is_arc || !are_lines(last.legs) || !are_lines(legs) || moves_other_axes(last.legs)
+        || moves_other_axes(legs)) {
         last.joined.clear();
         return;
     }
-    last.joined.push_back(last.legs[0].positions.front());
+    for (const Leg& leg : last.legs) last.joined.push_back(leg.positions.front());
     constexpr size_t most = 100; // lines that LinuxCNC joins
-    const double time = path.legs[0].end - path.legs[0].begin;
-    const double speed = time > 0.0 ? length_of(path.legs) / time : 0.0;
+    const double time = legs.back().end - legs.front().begin;
+    const double speed = time > 0.0 ? length_of(legs) / time : 0.0;
     const double enough = corners.reach_of_speed * speed * speed;
     double length = 0.0;
     size_t kept = last.joined.size();
-    AxisValues end = path.legs[0].positions.front();
+    AxisValues end = legs.front().positions.front();
     for (; kept > 0 && last.joined.size() - kept < most && length < enough; --kept) {
         const AxisValues& start = last.joined[kept - 1];
         length += core::hypot(core::hypot(end[0] - start[0], end[1] - start[1]), end[2] - start[2]);
@@ -241,15 +244,17 @@ void note_joined(RoundedCorners& corners, const Motion& motion, const Path& path
 void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path) {
     constexpr size_t most_legs = 4096; // more chords of an arc are longer than any rounding
     if (motion.from == motion.to && !motion.arc) return;
-    note_joined(corners, motion, path);
+    const std::vector<Leg> lines = lines_of_arc(motion, path, corners.arcs_as_lines());
+    const std::vector<Leg>& legs = lines.empty() ? path.legs : lines;
+    note_joined(corners, motion, legs);
     corners.end(motion.kind, motion.arc.has_value());
+    if (!lines.empty()) corners.last.is_arc = false;
     const bool rapid = motion.kind == MotionKind::rapid;
     if (!(rapid ? corners.rapids : corners.arcs).rounds() && !corners.mixed.rounds()) return;
     // From an unknown start, the whole region was checked, or is reported as unchecked.
-    if (path.legs.empty() || !path.legs.front().start_known) return;
-    const size_t first = path.legs.size() > most_legs ? path.legs.size() - most_legs : 0;
-    corners.last.legs.assign(path.legs.begin() + static_cast<std::ptrdiff_t>(first),
-                             path.legs.end());
+    if (legs.empty() || !legs.front().start_known) return;
+    const size_t first = legs.size() > most_legs ? legs.size() - most_legs : 0;
+    corners.last.legs.assign(legs.begin() + static_cast<std::ptrdiff_t>(first), legs.end());
 }
 
 std::vector<Leg> CornerStart::legs_with_joined() const {

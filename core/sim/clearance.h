@@ -132,11 +132,12 @@ struct CornerStart {
     CornerStart& operator=(CornerStart&&) noexcept;
     ~CornerStart();
 
-    std::optional<MotionKind> kind; // empty: the machine comes from rest
-    bool is_arc = false;
+    std::optional<MotionKind> kind;  // empty: the machine comes from rest
+    bool is_arc = false;             // and not taken for lines
     bool joins = false;              // it may be joined with straight feeds
     std::vector<Leg> legs;           // its last legs, if the corner after it may be rounded
     std::vector<AxisValues> joined;  // starts of the lines before it that may be joined with it
+    std::vector<Leg> rest;           // of a motion that may not have ended yet
     double by = 0.0;                 // of a feed: how far it deviates
     CornerLimit rapids, mixed, arcs; // as in `RoundedCorners`, when it was programmed
 
@@ -161,16 +162,19 @@ struct RoundedCorners {
     // Between feeds of which one is an arc, or moves other axes than X, Y and Z: if it is farther
     // off than `by` of both.
     CornerLimit arcs;
-    bool joins = false;          // straight feeds are joined
+    double joining = 0.0;        // lines this close to another one may be joined into it, mm
     double reach_of_speed = 0.0; // s2/mm: times the square of a speed, twice where it is rounded
     // The rest of a rounded corner, in feeds that may be joined to the one after it: its length and
-    // its deviation, mm, and that of the rotary axes, radians.
-    double left_after = 0.0, off_after = 0.0, turn_after = 0.0;
+    // its deviation, mm; see also `last.rest`.
+    double left_after = 0.0, off_after = 0.0;
     CornerStart last;
     std::optional<ToolNumber> tool; // that has cut with rounded corners
     bool by_several = false;        // more than one tool has
     double by_axes_of_cuts = 0.0;   // likewise of them by the tolerances of axes of rotation
     bool has_cut = false;           // a feed has met the stock
+
+    /// Arcs this close to two lines may be run as lines, mm.
+    double arcs_as_lines() const { return arcs.blends() ? joining : 0.0; }
 
     /// Deviation of a feed, with that of the corner where it begins.
     double of_feed(bool is_arc) const { return std::max(is_arc ? by_arc : by, last.by); }

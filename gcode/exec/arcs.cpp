@@ -223,6 +223,29 @@ core::Result<int> turns_of(const Execution& execution, bool clockwise) {
     return clockwise ? -turns : turns;
 }
 
+/// Where LinuxCNC joins feeds, it takes small arcs of the XY plane for lines, and does not count
+/// their full turns.
+///
+/// Source: emccanon.cc of LinuxCNC 2.9, ARC_FEED and chord_deviation.
+core::Result<void> check_full_turns(const Execution& execution, const SeenArc& arc,
+                                    const double (&centre)[2], int turns) {
+    const ModalState& modal = execution.modal();
+    if (execution.dialect.id != DialectId::linuxcnc || std::abs(turns) < 2
+        || modal.plane != Plane::xy || modal.path != PathMode::continuous
+        || modal.naive_tolerance == 0.0)
+        return {};
+    const double angle = arc_angle(arc.start, arc.end, centre, turns < 0 ? -1 : 1);
+    const double radius = core::hypot(arc.start[0] - centre[0], arc.start[1] - centre[1]);
+    constexpr double slack = 1e-6; // mm
+    if (radius * (1.0 - core::cos(0.5 * angle)) >= modal.naive_tolerance + slack) return {};
+    return core::fail(ErrorCode::unsupported,
+                      fmt::format("{}: LinuxCNC leaves out the full turns of this arc, because its "
+                                  "end is so near to its start that G64 Q{:g} makes lines of it; "
+                                  "program it under G61, or each turn in a block of its own",
+                                  arc.code, modal.naive_tolerance),
+                      arc.where);
+}
+
 constexpr double chord_tolerance = 0.001; // mm
 
 double& along(Position& position, size_t axis) { return *position[axis]; }
@@ -345,6 +368,8 @@ core::Result<void> move_along_arc(Execution& execution) {
     if (auto found = find_centre(execution, arc, axes, command.centre); !found) return found;
     if (auto checked = check_ends(execution, arc, command.centre); !checked) return checked;
     FEELER_TRY(command.turns, turns_of(execution, arc.clockwise));
+    if (auto checked = check_full_turns(execution, arc, command.centre, command.turns); !checked)
+        return checked;
     const size_t normal = axes.normal;
     std::optional<double> rise;
     if (modal.position[normal] && end[normal]) rise = *end[normal] - *modal.position[normal];

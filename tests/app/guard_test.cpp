@@ -1649,6 +1649,8 @@ TEST(GuardCommand, NamesWhatItCannotWorkWith) {
                 HasSubstr("work offsets"));
     EXPECT_THAT(refusal(without(setup_text, "[[tool]]", "\n\n"), ini), HasSubstr("tools"));
     EXPECT_THAT(refusal(setup_text, "[KINS]\nKINEMATICS = genhexkins\n"), HasSubstr("genhexkins"));
+    EXPECT_THAT(refusal(setup_text, ini + "[EMCMOT]\nSERVO_PERIOD = 2000000\n"),
+                HasSubstr("mill.ini: [EMCMOT] SERVO_PERIOD"));
     EXPECT_THAT(
         refusal(setup_text, "[KINS]\nKINEMATICS = xyzac-trt-kins\n[HAL]\nHALFILE = pins.tcl\n"),
         HasSubstr("_hal[xyzac-trt-kins"));

@@ -350,6 +350,21 @@ TEST(ToolChangePosition, OfTheIniFileIsWhereTheNextMoveStarts) {
         << "the motion of the tool change needs no length offset";
 }
 
+TEST(IniFile, WithALongServoPeriodLeavesCornersUnknown) {
+    const ScopedFolder folder;
+    const auto says_so = [&](const std::string& period) {
+        const auto ini = folder.write(
+            "m.ini", "[TRAJ]\nLINEAR_UNITS = mm\n[EMCMOT]\nSERVO_PERIOD = " + period + "\n");
+        std::string all;
+        for (const std::string& assumption :
+             check(plate_with_clamp(), changes_over_the_clamp, {"--ini", ini}).assumptions)
+            all += assumption + "\n";
+        return all.find("SERVO_PERIOD is longer") != std::string::npos;
+    };
+    EXPECT_TRUE(says_so("2000000"));
+    EXPECT_FALSE(says_so("1000000"));
+}
+
 TEST(ToolChangePosition, IsApproachedOnACheckedRapid) {
     const ScopedFolder folder;
     const auto checked = [&](const std::string& keys) {

@@ -354,6 +354,109 @@ TEST(CornerBlend, OfAxesThatMoveWithTheOthersIsWhatTheyChangeDifferently) {
     EXPECT_NEAR(blend.turn, 4.2e-3 * std::numbers::pi / 180.0, 1e-5);
 }
 
+TEST(CornerBlend, OfFeedsNeedsNoSpeedsOfAxes) {
+    Machine machine = machine_with(500.0);
+    Leg before = leg({-50, 0, 0}, {0, 0, 0}), after = leg({0, 0, 0}, {0, 50, 0});
+    before.end = after.end = 5.0; // 10 mm/s
+    const auto blend = [&](CornerKind kind) {
+        return blend_at(std::vector{before}, std::vector{after}, 0.05, kind, machine);
+    };
+    const CornerBlend feeds = blend(CornerKind::feeds), rapids = blend(CornerKind::rapids);
+    EXPECT_LT(feeds.reach.after, 1.0);
+    for (MachineAxis& axis : machine.axes) axis.rapid.reset();
+    EXPECT_EQ(blend(CornerKind::feeds).deviation, feeds.deviation);
+    EXPECT_EQ(blend(CornerKind::feeds).reach.after, feeds.reach.after);
+    EXPECT_GT(blend(CornerKind::rapids).reach.after, rapids.reach.after);
+}
+
+Motion arc_about(const Vec3& centre, const AxisPosition& from, const AxisPosition& to,
+                 double degrees) {
+    Motion motion{.kind = MotionKind::arc, .from = from, .to = to, .feed = 600.0};
+    motion.arc = ArcPath{.centre = centre, .angle = degrees * std::numbers::pi / 180.0};
+    return motion;
+}
+
+TEST(LinesOfArc, AreTwoChordsWithinTheToleranceAboutZ) {
+    const auto lines = [](const Motion& motion, double joining) {
+        return lines_of_arc(motion, path_of(motion, Machine(), 1e-3), joining);
+    };
+    const Motion half = arc_about(Vec3(1, 0, 0), {0, 0, 0}, {2, 0, 4}, -180.0);
+    const std::vector<Leg> two = lines(half, 1.01);
+    ASSERT_EQ(two.size(), 2U);
+    EXPECT_EQ(point(two[0].positions[0]), Vec3(0, 0, 0));
+    EXPECT_LT(glm::distance(point(two[0].positions[1]), Vec3(1, 1, 2)), 1e-9);
+    EXPECT_EQ(two[0].positions[1], two[1].positions[0]);
+    EXPECT_EQ(point(two[1].positions[1]), Vec3(2, 0, 4));
+    EXPECT_GT(two[0].end, two[0].begin);
+    EXPECT_EQ(two[0].end, two[1].begin);
+    EXPECT_EQ(lines(half, 1.0).size(), 2U) << "which of both is not certain";
+    EXPECT_TRUE(lines(half, 0.99).empty());
+    EXPECT_TRUE(lines(half, 0.0).empty());
+    const Motion circle = arc_about(Vec3(1, 0, 0), {0, 0, 0}, {0, 0, 0}, 360.0);
+    EXPECT_TRUE(lines(circle, 1.99).empty());
+    EXPECT_EQ(lines(circle, 2.01).size(), 2U);
+    Motion upright = half;
+    upright.arc->normal = 1;
+    EXPECT_TRUE(lines(upright, 1.01).empty());
+}
+
+/// A position of a straight leg.
+AxisValues at(const Leg& leg, double fraction) {
+    AxisValues values{};
+    for (size_t i = 0; i < axis_count; ++i)
+        values[i] = leg.positions[0][i] + fraction * (leg.positions[1][i] - leg.positions[0][i]);
+    return values;
+}
+
+TEST(DisplacedLegs, ContainAllThatIsMadeWhileTheMotionBeforeEnds) {
+    RandomCorners random;
+    const auto position = [&] {
+        AxisValues values{};
+        for (double& value : values) value = random.between(-50.0, 50.0);
+        return values;
+    };
+    for (int corner = 0; corner < 200; ++corner) {
+        Leg before{.positions = {position(), position()}};
+        const Leg after{.positions = {before.positions[1], position()}};
+        before.end = random.between(0.1, 10.0);
+        const double part = random.between(0.01, 1.0);
+        const std::vector<Leg> rest = last_part({&before, 1}, part);
+        ASSERT_EQ(rest.size(), 1U);
+        const double from = random.between(0.0, 0.9), to = random.between(from, 1.0);
+        const std::vector<Leg> legs =
+            displaced({&after, 1}, rest[0], from, to, before.positions[1]);
+        for (int point = 0; point < 20; ++point) {
+            const double along = random.between(0.0, 1.0);
+            const AxisValues now = at(before, 1.0 - part + part * random.between(from, to)),
+                             next = at(after, along), seen = at(legs[0], along);
+            double square = 0.0, turn = 0.0;
+            for (size_t i = 0; i < axis_count; ++i) {
+                const double off = now[i] - before.positions[1][i] + next[i] - seen[i];
+                if (is_rotary(i))
+                    turn += std::abs(off) * std::numbers::pi / 180.0;
+                else
+                    square += off * off;
+            }
+            EXPECT_LE(std::sqrt(square), legs[0].path_error + 1e-9);
+            EXPECT_LE(turn, legs[0].turn_error + 1e-9);
+        }
+    }
+}
+
+TEST(LastPart, IsThatOfTheTimeOrElseOfTheLength) {
+    std::vector<Leg> legs = {leg({0, 0, 0}, {6, 0, 0}), leg({6, 0, 0}, {6, 2, 0})};
+    std::vector<Leg> last = last_part(legs, 0.5);
+    ASSERT_EQ(last.size(), 2U);
+    EXPECT_NEAR(last[0].positions[0][0], 4.0, 1e-12);
+    EXPECT_EQ(last[1].positions, legs[1].positions);
+    EXPECT_EQ(last_part(legs, 0.1).size(), 1U);
+    legs[0].end = legs[1].begin = 1.0;
+    legs[1].end = 2.0;
+    last = last_part(legs, 0.75);
+    ASSERT_EQ(last.size(), 2U);
+    EXPECT_NEAR(last[0].positions[0][0], 3.0, 1e-12);
+}
+
 TEST(CornerBlend, CountsFourTimesTheToleranceWithoutAccelerations) {
     EXPECT_NEAR(most_blend_deviation(machine_with(std::nullopt)), 4.2, 1e-12);
     EXPECT_NEAR(most_blend_deviation(machine_with(500.0)), 1.84, 0.01);

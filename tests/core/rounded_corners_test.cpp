@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "core/motion/path.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 
@@ -168,20 +169,52 @@ TEST(RoundedCorners, AreAbsentBetweenRapidsThatStopOrAreFollowedByFeeds) {
     EXPECT_EQ(verdict(mixed, {}), Verdict::undecided);
 }
 
+/// As above, with a tool that tilts about the gauge line, towards the clamp.
+core::Setup with_tilting_head(double gap, double acceleration) {
+    core::Setup setup = around_a_corner(gap, true);
+    MachineAxis& axis = setup.machine.axes[3];
+    axis.present = true;
+    axis.direction = Vec3(1, 0, 0);
+    axis.side = Side::tool;
+    axis.carrier = setup.machine.spindle;
+    setup.machine.spindle = link_of(3);
+    for (size_t i = 0; i < 4; ++i) {
+        setup.machine.axes[i].rapid = 10'000.0;
+        setup.machine.axes[i].acceleration = acceleration;
+    }
+    return setup;
+}
+
+TEST(RoundedCorners, AreOffOnlyAlongTheMotionThatMayNotHaveEnded) {
+    // The head may tilt when the tool is still half of 200 mm short of its place along X, where the
+    // clamp is beside it: the tip then gets 20.5 mm nearer, and nothing more.
+    const auto verdict = [](double gap, double angle) {
+        core::Setup setup = with_tilting_head(gap, 5.0);
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        Corner corner(std::move(setup));
+        PathModeChange mode = within(0.02);
+        mode.blends = mode.blends_at_arcs = true;
+        corner.give({mode});
+        const AxisPosition start = {-150, 0, z, 0}, upright = {50, 0, z, 0},
+                           tilted = {50, 0, z, angle};
+        const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
+            corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0}});
+        };
+        corner.give({Motion{.kind = MotionKind::rapid, .from = start, .to = start}});
+        feed(start, upright);
+        feed(upright, tilted);
+        return corner.verdicts.back();
+    };
+    EXPECT_EQ(verdict(25.0, 20.0), Verdict::clear);
+    EXPECT_EQ(verdict(10.0, 20.0), Verdict::undecided);
+    EXPECT_EQ(verdict(10.0, -20.0), Verdict::clear) << "the other way round";
+}
+
 TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
-    // The tool tilts about the gauge line, towards the clamp. It is upright before it goes past.
+    // It is upright before it goes past.
     for (const bool blends : {false, true}) {
-        core::Setup setup = around_a_corner(10.0, true);
-        MachineAxis& axis = setup.machine.axes[3];
-        axis.present = true;
-        axis.direction = Vec3(1, 0, 0);
-        axis.side = Side::tool;
-        axis.carrier = setup.machine.spindle;
-        setup.machine.spindle = link_of(3);
-        for (size_t i = 0; i < 4; ++i) {
-            setup.machine.axes[i].rapid = 10'000.0;
-            setup.machine.axes[i].acceleration = i == 3 ? 5.0 : 500.0;
-        }
+        core::Setup setup = with_tilting_head(10.0, 500.0);
+        setup.machine.axes[3].acceleration = 5.0;
         const double z = setup.tools.at(ToolNumber{1}).length;
         Corner corner(std::move(setup));
         PathModeChange mode = within(0.02);
@@ -190,8 +223,7 @@ TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
             corner.give({mode});
         else
             corner.give({PathModeChange{Blending::exact_stop, {}}});
-        const AxisPosition upright = {-60, 0, z, 0}, tilted = {-60, 0, z, -40},
-                           past = {20, 0, z, 0};
+        const AxisPosition upright = {-60, 0, z, 0}, tilted = {-60, 0, z, 40}, past = {20, 0, z, 0};
         corner.give({Motion{.kind = MotionKind::rapid, .from = tilted, .to = tilted}});
         corner.give(
             {Motion{.kind = MotionKind::feed, .from = tilted, .to = upright, .feed = 600.0}});
@@ -210,6 +242,40 @@ TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
         feed(near, past);
         EXPECT_EQ(corner.verdicts.back(), blends ? Verdict::undecided : Verdict::clear);
     }
+}
+
+TEST(RoundedCorners, ReachBackThroughSmallArcsThatAreTakenForLines) {
+    Machine machine;
+    for (size_t i = 0; i < 3; ++i) {
+        machine.axes[i].present = true;
+        machine.axes[i].acceleration = 100.0;
+    }
+    const auto lines_before_corner = [&](double joining) {
+        RoundedCorners corners = corners_at_start(machine);
+        PathModeChange mode = within(0.05);
+        mode.joining = joining;
+        mode.blends = mode.blends_at_arcs = true;
+        change_mode(corners, mode, machine);
+        const auto note = [&](const Motion& motion) {
+            note_corner(corners, motion, path_of(motion, machine, 1e-3));
+        };
+        const auto feed = [](const AxisPosition& from, const AxisPosition& to) {
+            return Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0};
+        };
+        note(feed({-5, 0, 0}, {-0.1, 0, 0}));
+        Motion arc = feed({-0.1, 0, 0}, {0.1, 0, 0});
+        arc.kind = MotionKind::arc;
+        arc.arc = ArcPath{.centre = Vec3(0, -1, 0), .angle = -0.2};
+        note(arc);
+        note(feed({0.1, 0, 0}, {0.4, 0, 0}));
+        return corners.last.legs_with_joined();
+    };
+    const std::vector<Leg> joined = lines_before_corner(0.02);
+    ASSERT_EQ(joined.size(), 4U);
+    for (size_t i = 1; i < 4; ++i)
+        EXPECT_EQ(joined[i].positions.front(), joined[i - 1].positions.back());
+    EXPECT_EQ(joined[0].positions.front()[0], -5.0);
+    EXPECT_EQ(lines_before_corner(0.001).size(), 1U);
 }
 
 TEST(RoundedCorners, OfOneToolDoNotPutTheHolesOfAnotherInDoubt) {

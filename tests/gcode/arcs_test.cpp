@@ -42,6 +42,21 @@ TEST(Arc, TurnsAsOftenAsPSays) {
     EXPECT_THAT(error_of("G3 I5 P1.5 F100", DialectId::linuxcnc), HasSubstr("1:7: P1.5"));
 }
 
+TEST(Arc, LosesItsFullTurnsWhereLinuxcncTakesItForLines) {
+    const auto error = [](const std::string& mode, const std::string& arc,
+                          DialectId id = DialectId::linuxcnc) {
+        return error_of("G90 " + mode + "\nG3 X-0.03046 Y1.74497 Z4 I-50 " + arc + " F100", id);
+    };
+    // Of 2 degrees, two chords are within 0.0076 mm.
+    EXPECT_THAT(error("G64 P0.05", "P2"), HasSubstr("LinuxCNC leaves out the full turns"));
+    EXPECT_THAT(error("G64 P0.05 Q0.008", "P3"), HasSubstr("G64 Q0.008"));
+    EXPECT_EQ(error("G64 P0.05 Q0.007", "P2"), "");
+    EXPECT_EQ(error("G64 P0.05 Q0", "P2"), "");
+    EXPECT_EQ(error("G64 P0.05", "P1"), "");
+    EXPECT_EQ(error("G64", "P2"), "");
+    EXPECT_EQ(error("G61", "P2"), "");
+}
+
 TEST(Arc, IsAFullCircleIfItsEndsMeetAndRefusedIfThatIsNotCertain) {
     for (const DialectId id : {DialectId::linuxcnc, DialectId::fanuc, DialectId::grbl}) {
         EXPECT_EQ(error_of("G90 G2 X0 Y0 I150 F100", id), "");

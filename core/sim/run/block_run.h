@@ -35,11 +35,12 @@ struct BlockRun {
     bool turns = false;                 // whether rotary axes move
     bool pushes_centre = false;         // the non-cutting centre is pushed down into the stock
     bool drills_sideways = false;
-    bool leaves_contact = false;  // a probing move that ends when its contact is lost
-    bool is_uncertain = false;    // a motion is a probing move, or starts where one ended
-    double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
-    double off_path_rapids = 0.0; // likewise of its rapids
-    double off_by_axes = 0.0;     // of all its motions by the tolerances of axes of rotation, mm
+    bool flutes_meet_stock = false; // at a corner
+    bool leaves_contact = false;    // a probing move that ends when its contact is lost
+    bool is_uncertain = false;      // a motion is a probing move, or starts where one ended
+    double off_path = 0.0;          // deviation of its feeds by rounded corners, mm
+    double off_path_rapids = 0.0;   // likewise of its rapids
+    double off_by_axes = 0.0;       // of all its motions by the tolerances of axes of rotation, mm
     size_t moves_before = state.stock.log.size(); // that cut the stock before the block
     RoundedCorners corners_before = state.corners;
 
@@ -177,10 +178,17 @@ struct BlockRun {
     /// A corner between feeds of which one moves other axes than X, Y and Z.
     void check_turning_corner(const Motion& motion, const Path& path,
                               const std::vector<Leg>& before, const CornerBlend& blend);
+    /// Checks legs that the machine makes while it ends the motion of which `last.rest` is left.
+    void check_beside_rest(const std::vector<Leg>& legs);
+    /// How far the flutes may be off their cuts while the rotary axes are off by `turn`, radians.
+    double off_by_turn(const std::vector<Leg>& legs, double turn) const;
     /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the
     /// path `along` it, if that is stated. `may_cut`: the flutes may meet the stock.
-    void check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
-                      double deviation, bool may_cut);
+    /// `only_if_clear`: otherwise it changes nothing.
+    ///
+    /// Result: whether all bodies keep clear on `anywhere`.
+    bool check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
+                      double deviation, bool may_cut, bool only_if_clear = false);
     void check_from_unknown(const Motion& motion, const Path& path);
     /// Whether a motion with an unknown start is proven clear from every possible start.
     bool is_clear_from_anywhere(const Motion& motion);

@@ -67,6 +67,26 @@ void BlockRun::note_axis_tolerances(const Path& path) {
                              "tolerances; clearances include these");
 }
 
+double BlockRun::off_by_turn(const std::vector<Leg>& legs, double turn) const {
+    const std::vector<MovingBody> bodies = moving_bodies(setup, *tool());
+    const auto flutes = std::find_if(bodies.begin(), bodies.end(), [](const MovingBody& body) {
+        return body.kind == PartKind::flutes;
+    });
+    double off = 0.0;
+    for (const Leg& leg : legs) {
+        if (flutes == bodies.end() || !leg.straight || leg.positions.size() != 2) continue;
+        constexpr double most_turn = 0.2; // radians, of a piece
+        const int pieces = 1 + static_cast<int>(turned_on({&leg, 1}) / most_turn);
+        for (int i = 0; i < pieces; ++i) {
+            Leg piece = stretch(leg, static_cast<double>(i) / pieces, (i + 1.0) / pieces);
+            const double error = leg_against(setup, {}, *flutes, piece).error;
+            piece.turn_error += turn;
+            off = std::max(off, leg_against(setup, {}, *flutes, piece).error - error);
+        }
+    }
+    return off;
+}
+
 void BlockRun::round_corners(const Motion& motion, const Path& path) {
     RoundedCorners& corners = state.corners;
     const bool rapid = motion.kind == MotionKind::rapid;
@@ -87,7 +107,11 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
     if (cuts) corners.by_axes_of_cuts = std::max(corners.by_axes_of_cuts, off_by_axes);
     if (by == 0.0) return;
     off_path = std::max(off_path, by);
-    if (cuts) corners.note_cut(state.tool, motion.arc.has_value());
+    if (cuts) {
+        corners.note_cut(state.tool, motion.arc.has_value());
+        if (corners.arcs.rounds() && !motion.tip && moves_other_axes(path.legs))
+            corners.of_cuts = std::max(corners.of_cuts, by + off_by_turn(path.legs, smooth_turn));
+    }
     const double own = motion.arc ? corners.by_arc : corners.by;
     if (own > 0.0)
         state.assumptions.insert(fmt::format(
@@ -108,54 +132,61 @@ Leg off_path_by(Leg leg, const CornerBlend& blend) {
 
 } // namespace
 
-void BlockRun::check_corner(const Motion& motion, const Path& path) {
+void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     const CornerStart& last = state.corners.last;
     if (!last.kind) state.corners.left_after = 0.0;
     if (!last.kind) return;
+    // A small arc may be lines.
+    Path as_lines{.legs = lines_of_arc(motion, programmed, state.corners.arcs_as_lines()),
+                  .duration = programmed.duration};
+    const Path& path = as_lines.legs.empty() ? programmed : as_lines;
+    const bool is_arc = motion.arc && as_lines.legs.empty();
     const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
     const bool between_feeds = !rapid && !was;
-    const bool at_arc = motion.arc || last.is_arc;
+    const bool at_arc = is_arc || last.is_arc;
     const bool at_others =
         between_feeds && (moves_other_axes(path.legs) || moves_other_axes(last.legs));
     // The whole feed counts as rounded, but for what is left of a corner before it.
     if (between_feeds && !at_arc && !at_others) return check_joined_after_corner(path);
     state.corners.left_after = 0.0;
     const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
+    if (at_others && !limit.rounds() && last.by > 0.0)
+        state.assumptions.insert("rotary axes keep to their path where the control rounds corners "
+                                 "between feeds");
     if (!limit.rounds()) return;
-    const bool knows_dynamics = states_dynamics(setup.machine);
-    const CornerKind kind = !between_feeds                      ? CornerKind::rapids
-                            : state.corners.joins || last.joins ? CornerKind::joined_feeds
-                                                                : CornerKind::feeds;
+    const CornerKind kind = !between_feeds                              ? CornerKind::rapids
+                            : state.corners.joining > 0.0 || last.joins ? CornerKind::joined_feeds
+                                                                        : CornerKind::feeds;
     const std::vector<Leg> before = last.legs_with_joined();
     CornerBlend blend{{limit.distance, limit.distance}, limit.deviation};
     if (limit.blends()) blend = blend_at(before, path.legs, limit.blended, kind, setup.machine);
     if (at_others) return check_turning_corner(motion, path, before, blend);
-    if (at_arc && between_feeds && !knows_dynamics) {
+    if (at_arc && between_feeds && !states_accelerations(setup.machine)) {
         constexpr double sharp = 0.02; // radians
         if (turn_at(last.legs, path.legs).value_or(infinity) > sharp)
             state.assumptions.insert("it is assumed that LinuxCNC leaves corners of arcs by no "
                                      "more than those of lines, because the machine does not state "
-                                     "`rapid` and `acceleration` of its axes; it may leave them by "
-                                     "more");
+                                     "`acceleration` of its axes; it may leave them by more");
         return;
     }
     if (between_feeds && blend.deviation <= std::min(last.by, off_path)) return;
     auto region = corner_region(before, path.legs, blend.deviation, blend.reach);
     if (!region) return;
-    state.assumptions.insert(corner_assumption(limit, between_feeds, knows_dynamics));
+    state.assumptions.insert(
+        corner_assumption(limit, between_feeds, states_dynamics(setup.machine)));
     if (between_feeds && use(motion) == FluteUse::cutting)
         state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
-    if (kind == CornerKind::joined_feeds && !motion.arc) {
+    if (kind == CornerKind::joined_feeds && !is_arc) {
         state.corners.left_after = blend.reach.after - length_of(path.legs);
         state.corners.off_after = blend.deviation;
-        state.corners.turn_after = 0.0;
+        state.corners.last.rest.clear();
     }
     if (region->hull.positions.empty()) {
         state.assumptions.insert("corners of rapids at which rotary axes turn are not rounded");
         return;
     }
-    const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
-    const bool bends = std::any_of(region->along.begin(), region->along.end(), is_arc);
+    const bool bends = std::any_of(region->along.begin(), region->along.end(),
+                                   [](const Leg& leg) { return leg.arc.motion != nullptr; });
     const double deviation = bends && limit.distance < infinity ? limit.distance : blend.deviation;
     // Between straight moves the curve is within a triangle that begins and ends at the reach.
     if (between_feeds) region->hull = off_path_by(std::move(region->hull), blend);
@@ -166,12 +197,11 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
 void BlockRun::check_joined_after_corner(const Path& path) {
     RoundedCorners& corners = state.corners;
     if (!(corners.left_after > 0.0)) return;
-    CornerBlend blend;
-    blend.deviation = corners.off_after;
-    blend.turn = corners.turn_after;
+    corners.left_after -= length_of(path.legs);
+    if (!corners.last.rest.empty()) return check_beside_rest(path.legs);
+    const CornerBlend blend{.deviation = corners.off_after};
     std::vector<Leg> along;
     for (const Leg& leg : path.legs) along.push_back(off_path_by(leg, blend));
-    corners.left_after -= length_of(path.legs);
     check_region(along, {}, 0.0, true);
 }
 
@@ -193,33 +223,62 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
                                  "does not state all accelerations; it may leave them by more");
         return;
     }
+    RoundedCorners& corners = state.corners;
     // Both motions count as this far off anyway.
-    const bool both_turn = moves_other_axes(path.legs) && moves_other_axes(state.corners.last.legs);
+    const bool both_turn = moves_other_axes(path.legs) && moves_other_axes(corners.last.legs);
     if (blend.turn <= (both_turn ? smooth_turn : 0.0)
-        && blend.deviation <= std::min(state.corners.last.by, off_path))
+        && blend.deviation <= std::min(corners.last.by, off_path))
         return;
     state.assumptions.insert("where other axes than X, Y and Z move, LinuxCNC leaves corners by "
                              "what the tolerance of G64 and the ways of both motions make it; "
                              "clearances include this");
-    if (use(motion) == FluteUse::cutting)
-        state.corners.of_cuts = std::max(state.corners.of_cuts, blend.deviation);
-    const std::vector<Leg>& last = state.corners.last.legs;
-    if (state.corners.joins && !moves_other_axes(path.legs) && !last.empty()) {
-        // What is left, at most half, takes at most the time of the whole motion.
-        const double time = last.back().end - last.front().begin, length = length_of(path.legs);
-        state.corners.left_after =
-            path.duration > 0.0 ? length / path.duration * time - length : 0.0;
-        state.corners.off_after = blend.deviation;
-        state.corners.turn_after = blend.turn;
+    std::vector<Leg> rest = last_part(before, blend.left), meanwhile = path.legs;
+    // It takes at most the time of the whole motion before.
+    const std::vector<Leg>& last = corners.last.legs;
+    const double time = last.empty() ? 0.0 : last.back().end - last.front().begin;
+    if (corners.last.joined.empty() && meanwhile.size() == 1 && time < path.duration)
+        meanwhile[0] = stretch(meanwhile[0], 0.0, time / path.duration);
+    for (Leg& leg : rest) leg.path_error += corners.joining;
+    corners.last.rest = std::move(rest);
+    if (corners.joining > 0.0 && !moves_other_axes(path.legs) && time > 0.0) {
+        const double length = length_of(path.legs);
+        corners.left_after = path.duration > 0.0 ? length / path.duration * time - length : 0.0;
     }
-    std::vector<Leg> both = before;
-    both.insert(both.end(), path.legs.begin(), path.legs.end());
-    for (Leg& leg : both) leg = off_path_by(std::move(leg), blend);
-    check_region(both, {}, 0.0, true);
+    flutes_meet_stock = false;
+    check_beside_rest(meanwhile);
+    if (flutes_meet_stock && use(motion) == FluteUse::cutting)
+        corners.of_cuts =
+            std::max(corners.of_cuts, blend.deviation + off_by_turn(meanwhile, blend.turn));
 }
 
-void BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
-                            double deviation, bool may_cut) {
+void BlockRun::check_beside_rest(const std::vector<Leg>& legs) {
+    struct Part {
+        const Leg* rest;
+        double from, to;
+    };
+    constexpr size_t most_parts = 200;
+    constexpr double fine_turn = 0.002, fine_way = 0.02; // radians, mm
+    const std::vector<Leg>& rest = state.corners.last.rest;
+    const AxisValues corner = rest.back().positions.back();
+    std::vector<Part> parts;
+    for (const Leg& leg : rest) parts.push_back({&leg, 0.0, 1.0});
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const auto [leg, from, to] = parts[i];
+        const std::span<const Leg> one(leg, 1);
+        const bool may_split =
+            parts.size() < most_parts
+            && (to - from) * std::max(turned_on(one) / fine_turn, length_of(one) / fine_way) > 1.0;
+        const bool is_clear =
+            check_region(displaced(legs, *leg, from, to, corner), {}, 0.0, true, may_split);
+        if (is_clear || !may_split) continue;
+        const double middle = 0.5 * (from + to);
+        parts.push_back({leg, from, middle});
+        parts.push_back({leg, middle, to});
+    }
+}
+
+bool BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
+                            double deviation, bool may_cut, bool only_if_clear) {
     note_axis_tolerances({.legs = anywhere});
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
@@ -230,17 +289,23 @@ void BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<
     CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_stock()};
     for (const Leg& leg : anywhere)
         leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.anywhere);
+    // At the corner of a cut, the flutes may already, or still, cut.
+    const auto is_cut = [&](const TrackedPair& pair) {
+        return may_cut && pair.pair == Pair{PartKind::flutes};
+    };
     const bool is_clear =
-        std::all_of(corner.anywhere.begin(), corner.anywhere.end(),
-                    [](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
+        std::all_of(corner.anywhere.begin(), corner.anywhere.end(), [&](const TrackedPair& pair) {
+            return pair.verdict == Verdict::clear || is_cut(pair);
+        });
     for (const Leg& leg : along)
         if (!is_clear)
             leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.along);
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
+    if (only_if_clear && !is_clear) return false;
     for (const TrackedPair& pair : corner.anywhere) {
-        // At the corner of a cut, the flutes may already, or still, cut.
-        if (may_cut && pair.pair == Pair{PartKind::flutes}) continue;
+        if (is_cut(pair)) flutes_meet_stock = flutes_meet_stock || pair.lower <= 0.0;
+        if (is_cut(pair)) continue;
         auto now = corner.clearance(pair, !along.empty());
         if (!now) continue;
         now->time = result.duration;
@@ -248,6 +313,7 @@ void BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<
                   PairBounds(setup, state.memory).tracked_pair(pairs, now->pair)),
               *now);
     }
+    return is_clear;
 }
 
 } // namespace core

@@ -96,10 +96,15 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
                                : ", or state `rapid` and `acceleration` of the axes");
     // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
     // upper - lower. A pair that was only found near a corner has no upper bound.
-    if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower))
-        return fmt::format("The control may round corners by {:g} mm: use a smaller tolerance or "
+    if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower)) {
+        if (move.turns && corners.arcs.blends())
+            return "LinuxCNC may leave corners at which rotary axes turn by more than the "
+                   "tolerance of G64: program G61 for this block and the one before it; if that "
+                   "does not decide it, increase the clearance.";
+        return fmt::format("The control may round corners by {:.4g} mm: use a smaller tolerance or "
                            "exact stops; if that does not decide it, increase the clearance.",
                            off);
+    }
     if (move.turns)
         return "Turn the rotary axes farther away or in shorter blocks, or increase the clearance.";
     if (pair.pair.fixture) return "Increase the clearance.";
