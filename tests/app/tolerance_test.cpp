@@ -195,6 +195,37 @@ TEST(Tolerance, CountsTheRoundedCornerBeforeADisplacedRapid) {
     expect_limit(named(tolerances(ToleranceCase(setup.text(), program)), "G54 X").more, 2.5);
 }
 
+TEST(Tolerance, IsNotKnownWhereLinuxcncBlendsTheEndOfADisplacedMotion) {
+    const std::string setup = R"(mesh_size = 0.8
+[program]
+dialect = "linuxcnc"
+[machine]
+file = ")" FEELER_SOURCE_DIR R"(/assets/machines/mill4.toml"
+[offsets]
+G54 = { X = -350, Y = -200, Z = -400, A = 0 }
+[stock]
+box = [[0, 0, -30], [100, 100, 0]]
+frame = "G54"
+[[tool]]
+number = 1
+shape = "flat"
+diameter = 10
+flute_length = 25
+stick_out = 45
+holder = "BT40-ER32"
+)";
+    // A turns while the tool is still on its way to the machine position.
+    const auto more_y = [&](const std::string& mode) {
+        const std::string program = "G21 G90 G17 G40 G49 G80 G94\n" + mode
+                                    + "\nT1 M6\nS3000 M3\nG54\nG43 H1\nG0 X40 Y20 Z30\n"
+                                      "G1 Z-5 F1000\nX60\nZ60\n"
+                                      "G53 G1 X-270 Y-150 Z-150 F2000\nG1 A20\nG53 G0 Z0\nM2\n";
+        return named(tolerances(ToleranceCase(setup, program)), "G54 Y").more.by;
+    };
+    EXPECT_GT(more_y("G61"), 5.0);
+    EXPECT_EQ(more_y("G64 P0.05 Q0"), 0.0);
+}
+
 /// Checks the set-up with a value changed up to its limits.
 void expect_clear_inside(const ToleranceCase& one, const Tolerance& tolerance) {
     EXPECT_EQ(tolerance.unknown, "");
