@@ -58,19 +58,24 @@ NextRead next_read(const RingUnit& unit, const DeviceConfig& config, const RingI
     return has_copy(unit) && on_the_way < in.memory_room ? NextRead::of_copy : NextRead::none;
 }
 
-void read(RingUnit& unit, NextRead which, const DeviceConfig& config, const RingInput& in) {
+/// `of`: the copy as it was before this edge, at which a fault may have dropped it.
+void read(RingUnit& unit, NextRead which, const LineCopy& of, const DeviceConfig& config,
+          const RingInput& in) {
     RingUnit::Read read{
         .run = in.run, .asked = in.cycle, .arrives = in.cycle + config.host_latency};
     if (which == NextRead::of_ring) {
         read.number = unit.fetched;
         read.from = address_in_ring(unit, unit.fetched++);
     } else {
-        LineCopy& copy = unit.current.copy;
         read.of_copy = true;
-        read.number = copy.line++;
-        read.from = copy.from;
-        copy.from += sizeof(Line);
-        --copy.count;
+        read.number = of.line;
+        read.from = of.from;
+        if (has_copy(unit)) {
+            LineCopy& copy = unit.current.copy;
+            ++copy.line;
+            copy.from += sizeof(Line);
+            --copy.count;
+        }
         ++unit.copying;
         ++unit.lines_asked;
     }
@@ -176,13 +181,14 @@ void tick(RingUnit& unit, const HostMemory& host, const DeviceConfig& config, co
         unit.has_copied && unit.copied_is_missing && unit.copied_run == in.run;
     const bool works = !in.flush && !in.is_stopped && !unit.is_faulty;
     const NextRead next = works ? next_read(unit, config, in) : NextRead::none;
+    const LineCopy copy = unit.current.copy;
     if (works && has_lost_copy)
         fail(unit, Stop::bad_address, in.run, 0, unit.copied_to);
     else if (works)
         carry_out(unit, config, in);
     unit.check.tick(take_arrival(unit, host, in));
     if (checked.valid && checked.run == in.run) unit.waiting.push(checked);
-    if (next != NextRead::none) read(unit, next, config, in);
+    if (next != NextRead::none) read(unit, next, copy, config, in);
 }
 
 bool is_stalled(const RingUnit& unit, const DeviceConfig& config) {

@@ -21,7 +21,7 @@ public:
     TestDevice device;
     std::array<int, stop_count> stops{};
 
-    explicit RandomHost(uint32_t seed) : rng_(seed) {
+    explicit RandomHost(uint32_t seed) : device(config_for(seed)), rng_(seed) {
         std::vector<Record> posts = row_of_posts();
         posts.resize(4); // so that searches are short
         for (const auto& lines :
@@ -52,14 +52,29 @@ public:
     }
 
 private:
+    /// With every other one, copies can take longer than the memory may do nothing.
+    static DeviceConfig config_for(uint32_t seed) {
+        DeviceConfig config = small_config();
+        if (seed % 2 == 1) {
+            config.cycles_per_line = 4;
+            config.memory_limit = 150;
+        }
+        return config;
+    }
+
     uint32_t below(uint32_t n) { return static_cast<uint32_t>(rng_() % n); }
     bool one_in(uint32_t n) { return below(n) == 0; }
     bool has_room() const { return device.tail - device.state.ring.head < 50; }
 
     void fail() {
         CoprocessorState& s = device.state;
-        for (bool* stalled : {&s.memory.stalled, &s.ring.stalled})
-            if (one_in(*stalled ? 900 : 20'000)) *stalled = !*stalled;
+        const auto stall = [&](bool& stalled, uint32_t& cycles) {
+            if (!stalled && one_in(1'000)) cycles = one_in(15) ? below(3'000) : 1 + below(60);
+            stalled = cycles > 0;
+            if (stalled) --cycles;
+        };
+        stall(s.memory.stalled, memory_stall_);
+        stall(s.ring.stalled, host_stall_);
         if (one_in(5'000))
             s.shared.lines[(device.tail - rng_() % 3) % TestDevice::ring_size].word[rng_() % 16] ^=
                 1U << rng_() % 32;
@@ -109,7 +124,8 @@ private:
 
     /// Copies all lines again, and loads both models.
     void order_models() {
-        Line copy = device.copy_of(0, device.space.next);
+        const uint32_t more = one_in(3) ? below(300) : 0;
+        Line copy = device.copy_of(0, device.space.next + more);
         if (one_in(50)) copy.word[2] = 1U << rng_() % 32;  // lines that are not there
         if (one_in(50)) copy.word[4] += 1U << rng_() % 32; // from where no memory is
         if (one_in(100)) copy.word[rng_() % 5] ^= 1U << rng_() % 32;
@@ -156,6 +172,7 @@ private:
     std::vector<uint32_t> headers_; // of the models of tool and work
     uint32_t sequence_ = 1;         // of the next segment, as far as the host knows
     bool was_stopped_ = false;
+    uint32_t memory_stall_ = 0, host_stall_ = 0; // cycles
 };
 
 } // namespace hwsim::rtl
