@@ -447,6 +447,8 @@ LiveMotion LiveCheck::with_corner(LiveMotion motion) {
     if (waiting_.empty() || is_after_drop(motion) || motion.from_rest != 0
         || !is_blended_with(waiting_.back().queued)) {
         ahead_->corners.last.by = 0.0;
+        if (!waiting_.empty() && moves_others(waiting_.back().queued) != moves_others(motion))
+            ahead_->corners.last = {};
         return motion;
     }
     const LiveMotion& before = waiting_.back().queued;

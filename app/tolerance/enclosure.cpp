@@ -464,12 +464,16 @@ std::optional<LimitingPair> Enclosure::judge_corner(Run& run, size_t event,
     const bool rapid = motion.kind == core::MotionKind::rapid,
                was_rapid = *last.kind == core::MotionKind::rapid;
     const bool is_one_kind = exact == last_is_exact;
-    if (!rapid && !was_rapid) {
+    if (rapid == was_rapid) {
         // The whole feed counts as rounded, but next to arcs and where other axes than X, Y and Z
         // move the simulator needs the path of the motion before, and so it does after them.
-        const bool is_rounded_more = motion.arc || last.is_arc || others || last_others;
-        if ((is_rounded_more && last.arcs.rounds() && !(is_one_kind && !last.legs.empty()))
-            || (corners.left_after > 0.0 && !(is_one_kind && !has_hull(event, motion, run.frame))))
+        const bool at_others = others || last_others;
+        const bool is_rounded_more =
+            rapid ? last.rapids.blends() && at_others
+                  : last.arcs.rounds() && (motion.arc || last.is_arc || at_others);
+        const bool is_simulated = is_one_kind && (exact || !has_hull(event, motion, run.frame));
+        if ((is_rounded_more && !(is_simulated && !last.legs.empty()))
+            || (!rapid && corners.left_after > 0.0 && !is_simulated))
             return LimitingPair{.event = event, .tool = run.state.tool, .pair = {}, .missing = {}};
     }
     if (is_one_kind) return std::nullopt;

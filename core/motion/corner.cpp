@@ -128,6 +128,12 @@ bool states_dynamics(const Machine& machine) {
     return states_accelerations(machine);
 }
 
+bool states_all_dynamics(const Machine& machine) {
+    return std::all_of(machine.axes.begin(), machine.axes.end(), [](const MachineAxis& axis) {
+        return !axis.present || (axis.rapid && axis.acceleration);
+    });
+}
+
 double rounding_reach(double deviation, double turn) {
     return 4.0 * deviation / core::sin(0.5 * turn);
 }
@@ -384,6 +390,8 @@ double share_left(std::span<const Leg> legs, double most_override, const Machine
     const double time = (leg.end - leg.begin) / most_override;
     double total = 0.0, left = 0.0;
     for (const Leg& one : legs) total += (one.end - one.begin) / most_override;
+    // Lines that it is joined with have no times here.
+    if (length_of(leg) > 0.0) total = std::max(total, time * length_of(legs) / length_of(leg));
     for (size_t i = 0; i < axis_count; ++i) {
         const double rate = std::abs(leg.positions.back()[i] - leg.positions.front()[i]) / time;
         if (rate == 0.0) continue;
@@ -395,38 +403,64 @@ double share_left(std::span<const Leg> legs, double most_override, const Machine
     return std::min(left, most);
 }
 
+/// The time that a motion needs at most for the part that is left when it brakes, seconds.
+double time_of_rest(std::span<const Leg> legs, double left, const Machine& machine) {
+    AxisValues ways{};
+    for (const Leg& leg : legs)
+        for (size_t i = 0; i < axis_count && !leg.positions.empty(); ++i)
+            ways[i] += std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
+    double square = 0.0;
+    for (size_t i = 0; i < axis_count; ++i)
+        if (ways[i] > 0.0)
+            square = std::max(square, machine.axes[i].acceleration
+                                          ? 2.0 * left * ways[i]
+                                                / (least_share * *machine.axes[i].acceleration)
+                                          : infinity);
+    return cycle * std::sqrt(square);
+}
+
 /// The blend of motions of which one moves other axes than X, Y and Z.
 CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> after,
-                            double tolerance, double most_override, const Machine& machine) {
+                            double tolerance, bool rapid, const Machine& machine) {
+    const double most_override = rapid ? 1.0 : feed_override;
+    // The times of rapids on axes without a stated speed are only assumed.
+    const bool has_speeds = !rapid || states_all_dynamics(machine);
     const double middle = 0.5 * length_of(before), end = length_of(after);
     const auto first = before.empty() ? std::nullopt : rates_of(before.back()),
                second = after.empty() ? std::nullopt : rates_of(after.front());
-    // Some of the first motion is left when the second one begins, so its path is that far off.
+    CornerBlend blend{{middle, end}};
     if (!first || !second) {
-        const double left = share_left(before, most_override, machine);
-        return {{middle, end}, left * 2.0 * middle, left * turned_on(before), left};
+        // Some of the first motion is left when the second one begins, so its path is that far off.
+        if (has_speeds) blend.left = share_left(before, most_override, machine);
+        blend.deviation = blend.left * 2.0 * middle;
+        blend.turn = blend.left * turned_on(before);
+    } else {
+        // It brakes with half of the acceleration from which its speed was computed.
+        constexpr double longer = 2.0;
+        double cosine = 0.0, square = 0.0, degrees = 0.0;
+        for (size_t i = 0; i < axis_count; ++i) {
+            const double change = std::abs(second->rates[i] - first->rates[i]);
+            if (i < 3) cosine += first->rates[i] * second->rates[i];
+            if (is_rotary(i))
+                degrees += change;
+            else
+                square += change * change;
+        }
+        const double half = 0.5 * angle_between(cosine);
+        double rest = middle; // of the first motion when the second one begins
+        if (half > least_angle)
+            rest = std::min(rest, longer * cycle * 2.0 * tolerance / core::sin(half - least_angle));
+        const double least = least_along(*first, machine), speed = most_override * first->speed;
+        if (least > 0.0 && has_speeds) rest = std::min(rest, cycle * speed * speed / (2.0 * least));
+        const double both = std::min(rest, end); // that is made at the same time
+        blend.deviation = std::sqrt(square) * both;
+        blend.turn = degrees / degrees_per_radian * both;
+        if (middle > 0.0) blend.left = rest / (2.0 * middle);
     }
-    // It brakes with half of the acceleration from which its speed was computed.
-    constexpr double longer = 2.0;
-    double cosine = 0.0, square = 0.0, degrees = 0.0;
-    for (size_t i = 0; i < axis_count; ++i) {
-        const double change = std::abs(second->rates[i] - first->rates[i]);
-        if (i < 3) cosine += first->rates[i] * second->rates[i];
-        if (is_rotary(i))
-            degrees += change;
-        else
-            square += change * change;
-    }
-    const double half = 0.5 * angle_between(cosine);
-    double both = std::min(middle, end); // that is made at the same time
-    if (half > least_angle)
-        both = std::min(both, longer * cycle * 2.0 * tolerance / core::sin(half - least_angle));
-    const double least = least_along(*first, machine), speed = most_override * first->speed;
-    if (least > 0.0) both = std::min(both, cycle * speed * speed / (2.0 * least));
-    return {{middle, end},
-            std::sqrt(square) * both,
-            degrees / degrees_per_radian * both,
-            middle > 0.0 ? std::min(0.5, both / (2.0 * middle)) : 0.5};
+    const double time = after.empty() ? 0.0 : (after.back().end - after.front().begin);
+    if (time > 0.0 && has_speeds)
+        blend.part_after = most_override * time_of_rest(before, blend.left, machine) / time;
+    return blend;
 }
 
 } // namespace
@@ -514,8 +548,7 @@ double most_blend_deviation(const Machine& machine) {
 CornerBlend blend_at(std::span<const Leg> before, std::span<const Leg> after, double tolerance,
                      CornerKind kind, const Machine& machine) {
     if (moves_other_axes(before) || moves_other_axes(after))
-        return blend_of_others(before, after, tolerance,
-                               kind == CornerKind::rapids ? 1.0 : feed_override, machine);
+        return blend_of_others(before, after, tolerance, kind == CornerKind::rapids, machine);
     const auto is_arc = [](const Leg& leg) { return leg.arc.motion != nullptr; };
     const bool is_joined = kind == CornerKind::joined_feeds;
     const double middle = 0.5 * length_of(before);

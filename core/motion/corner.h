@@ -33,6 +33,9 @@ bool states_accelerations(const Machine& machine);
 /// Whether their speeds are known, too.
 bool states_dynamics(const Machine& machine);
 
+/// Whether speeds and accelerations of all axes are known.
+bool states_all_dynamics(const Machine& machine);
+
 /// How far from a corner the control leaves the motion before it and the one after it, mm.
 struct CornerReach {
     double before = infinity, after = infinity;
@@ -44,7 +47,10 @@ struct CornerBlend {
     CornerReach reach;
     double deviation = 0.0; // greatest distance from the path, mm
     double turn = 0.0;      // greatest sum of what all rotary axes are off, radians
-    double left = 0.5;      // the part of the first motion that is left when the second one begins
+    // The part of the first motion that is left when the second one begins, and the part of the
+    // second one that is made until the first one has ended; only if other axes than X, Y and Z
+    // move. For joined motions, `part_after` may exceed 1.
+    double left = 0.5, part_after = infinity;
 };
 
 /// Which motions meet at a corner.

@@ -354,6 +354,46 @@ TEST(CornerBlend, OfAxesThatMoveWithTheOthersIsWhatTheyChangeDifferently) {
     EXPECT_NEAR(blend.turn, 4.2e-3 * std::numbers::pi / 180.0, 1e-5);
 }
 
+TEST(CornerBlend, LeavesAtLeastWhatThePlannerOfLinuxcncDoesOfATurningMotion) {
+    std::ifstream file(FEELER_SOURCE_DIR "/tests/core/linuxcnc_turning_corners.txt");
+    size_t corners = 0, close = 0, made_close = 0;
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with('#')) continue;
+        ++corners;
+        std::istringstream words(line);
+        Machine machine;
+        for (size_t i = 0; i < 4; ++i) {
+            double acceleration = 0.0;
+            words >> acceleration;
+            machine.axes[i].present = true;
+            machine.axes[i].acceleration = acceleration;
+        }
+        double tolerance = 0.0, feeds[2], left = 0.0, made = 0.0;
+        words >> tolerance >> feeds[0] >> feeds[1];
+        Leg before{.positions = {AxisValues{}, AxisValues{}}}, after = before;
+        for (size_t i = 0; i < 4; ++i) words >> before.positions[0][i];
+        for (size_t i = 0; i < 4; ++i) words >> after.positions[1][i];
+        words >> left >> made;
+        ASSERT_TRUE(words) << line;
+        const auto time_of = [](const Leg& one, double feed) {
+            const double length = length_of({&one, 1});
+            return (length > 0.0 ? length : std::abs(one.positions[1][3] - one.positions[0][3]))
+                   / feed;
+        };
+        before.end = time_of(before, feeds[0]);
+        after.end = time_of(after, feeds[1]);
+        const CornerBlend blend =
+            blend_at({&before, 1}, {&after, 1}, tolerance, CornerKind::feeds, machine);
+        EXPECT_LE(left, blend.left + 1e-5) << line;
+        EXPECT_LE(made, blend.part_after + 1e-5) << line;
+        made_close += made > 0.3 * std::min(1.0, blend.part_after);
+        close += left > 0.3 * blend.left;
+    }
+    EXPECT_EQ(corners, 300U);
+    EXPECT_GT(close, 100U) << "the bound is not far off";
+    EXPECT_GT(made_close, 100U);
+}
+
 TEST(CornerBlend, OfFeedsNeedsNoSpeedsOfAxes) {
     Machine machine = machine_with(500.0);
     Leg before = leg({-50, 0, 0}, {0, 0, 0}), after = leg({0, 0, 0}, {0, 50, 0});

@@ -244,6 +244,29 @@ TEST(RoundedCorners, LeaveDoubtWhereAnAxisOfRotationMayStillTurn) {
     }
 }
 
+TEST(RoundedCorners, OfRapidsBeginWhileAnAxisOfRotationStillTurns) {
+    enum { exact, at_speed, unknown, fast };
+    const auto verdict = [](int mode) {
+        core::Setup setup = with_tilting_head(10.0, 500.0);
+        setup.machine.axes[3].acceleration = mode == fast ? 1e5 : 5.0;
+        if (mode == unknown) setup.machine.axes[3].rapid.reset();
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        Corner corner(std::move(setup));
+        PathModeChange blends{Blending::continuous, {}};
+        blends.rapids_keep_speed = true;
+        corner.give({mode == exact ? PathModeChange{Blending::exact_stop, {}} : blends});
+        const AxisPosition tilted = {-60, 0, z, 40}, upright = {-60, 0, z, 0}, past = {20, 0, z, 0};
+        corner.give({Motion{.kind = MotionKind::rapid, .from = tilted, .to = tilted}});
+        corner.give({Motion{.kind = MotionKind::rapid, .from = tilted, .to = upright}});
+        corner.give({Motion{.kind = MotionKind::rapid, .from = upright, .to = past}});
+        return corner.verdicts.back();
+    };
+    EXPECT_EQ(verdict(exact), Verdict::clear);
+    EXPECT_EQ(verdict(at_speed), Verdict::undecided);
+    EXPECT_EQ(verdict(unknown), Verdict::undecided);
+    EXPECT_EQ(verdict(fast), Verdict::clear);
+}
+
 TEST(RoundedCorners, ReachBackThroughSmallArcsThatAreTakenForLines) {
     Machine machine;
     for (size_t i = 0; i < 3; ++i) {

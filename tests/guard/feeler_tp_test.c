@@ -973,6 +973,119 @@ static void leaves_corners_as_recorded(void) {
     fclose(file);
 }
 
+/* A corner of two lines of X, Y, Z and A, at 0, and what the planner did there. */
+struct turning_corner {
+    double acceleration[4], tolerance, feed[2];
+    double from[4], to[4];
+    /* The part of the first line that was left when the second one had begun, and that of the second one
+     * that was made when the first one ended. */
+    double left, made;
+    double off;  /* the farthest from places that are short of the end of the first line and on along the second */
+};
+
+static double way_of(double const *way) {
+    double const length = sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    return length > 0 ? length : fabs(way[3]);
+}
+
+static struct turning_corner draw_turning_corner(int k) {
+    enum { WITHOUT_A, ONLY_A, ALL };
+    static int const kinds[7][2] = {{WITHOUT_A, ONLY_A}, {WITHOUT_A, ALL}, {ONLY_A, WITHOUT_A}, {ONLY_A, ALL},
+                                    {ALL, WITHOUT_A},    {ALL, ONLY_A},    {ALL, ALL}};
+    struct turning_corner c = {.tolerance = pow(10, uniform(-2, 0))};
+    for (int i = 0; i < 4; ++i) c.acceleration[i] = pow(10, uniform(1.7, 3.5));
+    for (int i = 0; i < 2; ++i) {
+        double *const way = i == 0 ? c.from : c.to;
+        int const kind = kinds[k % 7][i];
+        double const length = pow(10, uniform(-1, 2));
+        if (kind != ONLY_A)
+            for (int j = 0; j < 3; ++j) way[j] = length * uniform(-1, 1);
+        if (kind != WITHOUT_A) way[3] = pow(10, uniform(-1, 2)) * uniform(-1, 1);
+        c.feed[i] = pow(10, uniform(0.5, 2));
+    }
+    return c;
+}
+
+static void make_turning_corner(struct turning_corner *c, int k) {
+    EmcPose pose[3];
+    memset(pose, 0, sizeof pose);
+    for (int i = 0; i < 3; i += 2) {
+        double const *const way = i == 0 ? c->from : c->to;
+        pose[i] = at(way[0], way[1], way[2]);
+        pose[i].a = way[3];
+    }
+    real_tpClear(&tp);
+    real_tpSetPos(&tp, &pose[0]);
+    real_tpSetTermCond(&tp, TC_TERM_COND_PARABOLIC, c->tolerance);
+    motion.net_feed_scale = k % 2 ? 1.2 : 1.0;
+    for (int i = 0; i < 2; ++i) {
+        double const *const way = i == 0 ? c->from : c->to, length = way_of(way);
+        double acceleration = 1e99;
+        for (int j = 0; j < 4; ++j)
+            if (way[j] != 0) acceleration = fmin(acceleration, c->acceleration[j] * length / fabs(way[j]));
+        real_tpSetId(&tp, ++line_number);
+        EXPECT(real_tpAddLine(&tp, pose[i + 1], 2, c->feed[i], 1.2 * c->feed[i], acceleration, 0xff, 0, -1, tag)
+               == TP_ERR_OK);
+        if (i == 0 && k / 2 % 2)
+            for (int n = (int)(700 * length / c->feed[0]); n > 0; --n) real_tpRunCycle(&tp, 1000000);
+    }
+    double uu = 0, uv = 0, vv = 0;
+    for (int i = 0; i < 4; ++i)
+        uu += c->from[i] * c->from[i], uv += c->from[i] * c->to[i], vv += c->to[i] * c->to[i];
+    for (int i = 0; i < 1000000 && (i < 5 || !real_tpIsDone(&tp)); ++i) {
+        EmcPose now;
+        real_tpRunCycle(&tp, 1000000);
+        tpGetPos(&tp, &now);
+        double const p[4] = {now.tran.x, now.tran.y, now.tran.z, now.a};
+        double pu = 0, pv = 0, off = 0;
+        for (int j = 0; j < 4; ++j) pu += p[j] * c->from[j], pv += p[j] * c->to[j];
+        double const short_of = (vv * pu - uv * pv) / (uu * vv - uv * uv), on = (uu * pv - uv * pu) / (uu * vv - uv * uv);
+        for (int j = 0; j < 4; ++j) off = fmax(off, fabs(p[j] - short_of * c->from[j] - on * c->to[j]));
+        c->off = fmax(c->off, off);
+        if (on > 1e-6) c->left = fmax(c->left, short_of);
+        if (short_of > 1e-6) c->made = fmax(c->made, on);
+    }
+    motion.net_feed_scale = 1.0;
+    EXPECT(real_tpIsDone(&tp));
+}
+
+/* Where the planner begins to blend corners of X, Y, Z and A. */
+static void leaves_turning_corners_as_recorded(void) {
+    char const *const record = getenv("FEELER_RECORD_TURNS"); /* a file to write instead */
+    FILE *const file = fopen(record ? record : TURNING_CORNERS, record ? "w" : "r");
+    EXPECT(file != NULL);
+    if (!file) return;
+    char line[1000];
+    if (record)
+        fputs("# Corners of the planner of LinuxCNC 2.9: tests/guard/feeler_tp_test.c. mm, degrees, seconds.\n"
+              "# accelerations of X, Y, Z, A; tolerance; both feeds; from; corner is 0; to; the part of the first\n"
+              "# line that was left when the second one had begun; that of the second one made when the first one ended\n",
+              file);
+    else
+        for (int i = 0; i < 3; ++i) EXPECT(fgets(line, sizeof line, file) != NULL);
+    srand(37);
+    for (int k = 0; k < 300; ++k) {
+        struct turning_corner c = draw_turning_corner(k);
+        make_turning_corner(&c, k);
+        EXPECT(c.off < 1e-6);
+        if (record) {
+            for (int i = 0; i < 4; ++i) fprintf(file, "%.9g ", c.acceleration[i]);
+            fprintf(file, "%.9g %.9g %.9g ", c.tolerance, c.feed[0], c.feed[1]);
+            for (int i = 0; i < 4; ++i) fprintf(file, "%.12g ", c.from[i]);
+            for (int i = 0; i < 4; ++i) fprintf(file, "%.12g ", c.to[i]);
+            fprintf(file, "%.6f %.6f\n", c.left, c.made);
+            continue;
+        }
+        EXPECT(fgets(line, sizeof line, file) != NULL);
+        char const *end = line + strlen(line);
+        for (int blanks = 0; end > line && blanks < 2; blanks += *--end == ' ') {}
+        double left, made;
+        EXPECT(sscanf(end, "%lf %lf", &left, &made) == 2);
+        EXPECT(fabs(left - c.left) < 1e-4 && fabs(made - c.made) < 1e-4);
+    }
+    fclose(file);
+}
+
 /* A line, and an arc about `centre` in the plane of X and Y. */
 struct line_and_arc {
     EmcPose from, corner;
@@ -1120,6 +1233,7 @@ int main(int count, char **words) {
         CASE(leaves_corners_by_no_more_than_the_guard_counts),
         CASE(ends_where_it_should_however_late_permits_come),
         CASE(leaves_corners_as_recorded),
+        CASE(leaves_turning_corners_as_recorded),
         CASE(keeps_to_the_path_at_arcs),
         CASE(does_not_stop_between_a_line_and_an_arc_that_touch),
         CASE(passes_blocks_of_a_rotary_axis_without_a_stop),

@@ -175,11 +175,11 @@ struct BlockRun {
     void check_corner(const Motion& motion, const Path& path);
     /// The corner before lines that may be joined with these.
     void check_joined_after_corner(const Path& path);
-    /// A corner between feeds of which one moves other axes than X, Y and Z.
+    /// A corner of LinuxCNC at which other axes than X, Y and Z move.
     void check_turning_corner(const Motion& motion, const Path& path,
                               const std::vector<Leg>& before, const CornerBlend& blend);
     /// Checks legs that the machine makes while it ends the motion of which `last.rest` is left.
-    void check_beside_rest(const std::vector<Leg>& legs);
+    void check_beside_rest(const std::vector<Leg>& legs, bool may_cut);
     /// How far the flutes may be off their cuts while the rotary axes are off by `turn`, radians.
     double off_by_turn(const std::vector<Leg>& legs, double turn) const;
     /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the

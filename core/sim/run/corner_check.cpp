@@ -145,12 +145,12 @@ void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     const bool between_feeds = !rapid && !was;
     const bool at_arc = is_arc || last.is_arc;
     const bool at_others =
-        between_feeds && (moves_other_axes(path.legs) || moves_other_axes(last.legs));
+        rapid == was && (moves_other_axes(path.legs) || moves_other_axes(last.legs));
     // The whole feed counts as rounded, but for what is left of a corner before it.
     if (between_feeds && !at_arc && !at_others) return check_joined_after_corner(path);
     state.corners.left_after = 0.0;
     const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
-    if (at_others && !limit.rounds() && last.by > 0.0)
+    if (at_others && between_feeds && !limit.rounds() && last.by > 0.0)
         state.assumptions.insert("rotary axes keep to their path where the control rounds corners "
                                  "between feeds");
     if (!limit.rounds()) return;
@@ -160,7 +160,7 @@ void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     const std::vector<Leg> before = last.legs_with_joined();
     CornerBlend blend{{limit.distance, limit.distance}, limit.deviation};
     if (limit.blends()) blend = blend_at(before, path.legs, limit.blended, kind, setup.machine);
-    if (at_others) return check_turning_corner(motion, path, before, blend);
+    if (at_others && limit.blends()) return check_turning_corner(motion, path, before, blend);
     if (at_arc && between_feeds && !states_accelerations(setup.machine)) {
         constexpr double sharp = 0.02; // radians
         if (turn_at(last.legs, path.legs).value_or(infinity) > sharp)
@@ -197,12 +197,14 @@ void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
 void BlockRun::check_joined_after_corner(const Path& path) {
     RoundedCorners& corners = state.corners;
     if (!(corners.left_after > 0.0)) return;
-    corners.left_after -= length_of(path.legs);
-    if (!corners.last.rest.empty()) return check_beside_rest(path.legs);
+    std::vector<Leg> legs = path.legs;
+    const double length = length_of(legs), left = corners.left_after;
+    if (legs.size() == 1 && left < length) legs[0] = stretch(legs[0], 0.0, left / length);
+    corners.left_after -= length;
+    if (!corners.last.rest.empty()) return check_beside_rest(legs, true);
     const CornerBlend blend{.deviation = corners.off_after};
-    std::vector<Leg> along;
-    for (const Leg& leg : path.legs) along.push_back(off_path_by(leg, blend));
-    check_region(along, {}, 0.0, true);
+    for (Leg& leg : legs) leg = off_path_by(std::move(leg), blend);
+    check_region(legs, {}, 0.0, true);
 }
 
 void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
@@ -212,46 +214,44 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
                                  "control follows the tool tip");
         return;
     }
+    const bool rapid = motion.kind == MotionKind::rapid;
     if (blend.turn == 0.0 && blend.deviation == 0.0) return;
     const auto is_known = [](const MachineAxis& axis) {
         return !axis.present || axis.acceleration;
     };
     const auto& axes = setup.machine.axes;
-    if (!std::all_of(axes.begin(), axes.end(), is_known)) {
+    if (!rapid && !std::all_of(axes.begin(), axes.end(), is_known)) {
         state.assumptions.insert("it is assumed that LinuxCNC passes corners at which other axes "
                                  "than X, Y and Z move within 0.01 degrees, because the machine "
                                  "does not state all accelerations; it may leave them by more");
         return;
     }
     RoundedCorners& corners = state.corners;
-    // Both motions count as this far off anyway.
+    // Both feeds count as this far off anyway.
     const bool both_turn = moves_other_axes(path.legs) && moves_other_axes(corners.last.legs);
-    if (blend.turn <= (both_turn ? smooth_turn : 0.0)
+    if (!rapid && blend.turn <= (both_turn ? smooth_turn : 0.0)
         && blend.deviation <= std::min(corners.last.by, off_path))
         return;
-    state.assumptions.insert("where other axes than X, Y and Z move, LinuxCNC leaves corners by "
-                             "what the tolerance of G64 and the ways of both motions make it; "
-                             "clearances include this");
+    state.assumptions.insert(
+        rapid ? "LinuxCNC may begin a rapid before the one before it has ended, also where rotary "
+                "axes turn; clearances include this"
+              : "where other axes than X, Y and Z move, LinuxCNC leaves corners by what the "
+                "tolerance of G64 and the ways of both motions make it; clearances include this");
     std::vector<Leg> rest = last_part(before, blend.left), meanwhile = path.legs;
-    // It takes at most the time of the whole motion before.
-    const std::vector<Leg>& last = corners.last.legs;
-    const double time = last.empty() ? 0.0 : last.back().end - last.front().begin;
-    if (corners.last.joined.empty() && meanwhile.size() == 1 && time < path.duration)
-        meanwhile[0] = stretch(meanwhile[0], 0.0, time / path.duration);
+    if (meanwhile.size() == 1 && blend.part_after < 1.0)
+        meanwhile[0] = stretch(meanwhile[0], 0.0, blend.part_after);
     for (Leg& leg : rest) leg.path_error += corners.joining;
     corners.last.rest = std::move(rest);
-    if (corners.joining > 0.0 && !moves_other_axes(path.legs) && time > 0.0) {
-        const double length = length_of(path.legs);
-        corners.left_after = path.duration > 0.0 ? length / path.duration * time - length : 0.0;
-    }
+    if (!rapid && corners.joining > 0.0 && !moves_other_axes(path.legs))
+        corners.left_after = (blend.part_after - 1.0) * length_of(path.legs);
     flutes_meet_stock = false;
-    check_beside_rest(meanwhile);
+    check_beside_rest(meanwhile, !rapid);
     if (flutes_meet_stock && use(motion) == FluteUse::cutting)
         corners.of_cuts =
             std::max(corners.of_cuts, blend.deviation + off_by_turn(meanwhile, blend.turn));
 }
 
-void BlockRun::check_beside_rest(const std::vector<Leg>& legs) {
+void BlockRun::check_beside_rest(const std::vector<Leg>& legs, bool may_cut) {
     struct Part {
         const Leg* rest;
         double from, to;
@@ -269,7 +269,7 @@ void BlockRun::check_beside_rest(const std::vector<Leg>& legs) {
             parts.size() < most_parts
             && (to - from) * std::max(turned_on(one) / fine_turn, length_of(one) / fine_way) > 1.0;
         const bool is_clear =
-            check_region(displaced(legs, *leg, from, to, corner), {}, 0.0, true, may_split);
+            check_region(displaced(legs, *leg, from, to, corner), {}, 0.0, may_cut, may_split);
         if (is_clear || !may_split) continue;
         const double middle = 0.5 * (from + to);
         parts.push_back({leg, from, middle});

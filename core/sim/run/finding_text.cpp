@@ -89,11 +89,13 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
     const double off =
         path_deviation(pair.pair, rapid ? corners.rapids.deviation : corners.by, corners);
     if (rapid && corners.rapids.keeps_speed())
-        return fmt::format("The control rounds corners between rapids as far as their speeds and "
-                           "accelerations make it: program G64 P0.02 or G61{}.",
-                           states_dynamics(setup.machine)
-                               ? ""
-                               : ", or state `rapid` and `acceleration` of the axes");
+        return fmt::format(
+            "The control rounds corners between rapids as far as their speeds and "
+            "accelerations make it: program {}{}.",
+            setup.machine.has_rotary() ? "G61, or G64 P0.02 if no rotary axis turns before or after"
+                                       : "G64 P0.02 or G61",
+            states_dynamics(setup.machine) ? ""
+                                           : ", or state `rapid` and `acceleration` of the axes");
     // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
     // upper - lower. A pair that was only found near a corner has no upper bound.
     if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower)) {
