@@ -88,6 +88,33 @@ Leg hull_of(const std::vector<Leg>& legs) {
 
 } // namespace
 
+namespace {
+
+// LinuxCNC: 1e-8 mm or inches.
+constexpr double counted = 1e-6; // mm, degrees
+
+} // namespace
+
+bool is_left_out(const Motion& motion) {
+    if (motion.arc) return false;
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (motion.from[i].has_value() != motion.to[i].has_value()) return false;
+        if (motion.from[i] && std::abs(*motion.to[i] - *motion.from[i]) > counted) return false;
+    }
+    return true;
+}
+
+std::vector<Leg> without_rounding(std::span<const Leg> legs) {
+    std::vector<Leg> plain(legs.begin(), legs.end());
+    for (Leg& leg : plain) {
+        if (!has_ends(leg)) continue;
+        for (size_t i = 0; i < axis_count; ++i)
+            if (std::abs(leg.positions[1][i] - leg.positions[0][i]) <= counted)
+                leg.positions[1][i] = leg.positions[0][i];
+    }
+    return plain;
+}
+
 double length_of(std::span<const Leg> legs) {
     double length = 0.0;
     for (const Leg& leg : legs) length += length_of(leg);
@@ -382,9 +409,27 @@ double least_along(const Rates& motion, const Machine& machine) {
     return least_share * least;
 }
 
-/// The part of a straight motion that is left when it begins to brake: at most half.
+/// The least acceleration of an axis in a motion that is blended, mm/s2; empty if it is not stated.
+/// Along an arc it is that of the slowest axis.
+std::optional<double> blended_acceleration(std::span<const Leg> legs, size_t axis,
+                                           const Machine& machine) {
+    std::optional<double> own = machine.axes[axis].acceleration;
+    if (!legs.back().arc.motion) {
+        if (own) *own *= least_share;
+        return own;
+    }
+    for (size_t i = 0; i < axis_count && own; ++i) {
+        if (!machine.axes[i].present || is_rotary(i) != is_rotary(axis)) continue;
+        if (!machine.axes[i].acceleration) return std::nullopt;
+        own = std::min(*own, *machine.axes[i].acceleration);
+    }
+    if (own) *own *= share_along_arc * least_share;
+    return own;
+}
+
+/// The part of a motion that is left when it begins to brake: at most half, and what a cycle adds.
 double share_left(std::span<const Leg> legs, double most_override, const Machine& machine) {
-    constexpr double most = 0.5;
+    constexpr double most = 0.5 * cycle;
     if (legs.empty() || !has_ends(legs.back())) return most;
     const Leg& leg = legs.back();
     const double time = (leg.end - leg.begin) / most_override;
@@ -393,12 +438,14 @@ double share_left(std::span<const Leg> legs, double most_override, const Machine
     // Lines that it is joined with have no times here.
     if (length_of(leg) > 0.0) total = std::max(total, time * length_of(legs) / length_of(leg));
     for (size_t i = 0; i < axis_count; ++i) {
-        const double rate = std::abs(leg.positions.back()[i] - leg.positions.front()[i]) / time;
-        if (rate == 0.0) continue;
-        if (!machine.axes[i].acceleration || !(time > 0.0)) return most;
+        double way = std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
+        if (leg.arc.motion && way > 0.0 && !is_rotary(i)) way = length_of(leg);
+        const double rate = way / time;
+        if (way == 0.0) continue;
+        const std::optional<double> acceleration = blended_acceleration(legs, i, machine);
+        if (!acceleration || !(time > 0.0)) return most;
         // Of its way, rate times the time, it needs rate^2 / (2 a).
-        left = std::max(left,
-                        cycle * rate / (2.0 * least_share * *machine.axes[i].acceleration) / total);
+        left = std::max(left, cycle * rate / (2.0 * *acceleration) / total);
     }
     return std::min(left, most);
 }
@@ -410,12 +457,13 @@ double time_of_rest(std::span<const Leg> legs, double left, const Machine& machi
         for (size_t i = 0; i < axis_count && !leg.positions.empty(); ++i)
             ways[i] += std::abs(leg.positions.back()[i] - leg.positions.front()[i]);
     double square = 0.0;
-    for (size_t i = 0; i < axis_count; ++i)
-        if (ways[i] > 0.0)
-            square = std::max(square, machine.axes[i].acceleration
-                                          ? 2.0 * left * ways[i]
-                                                / (least_share * *machine.axes[i].acceleration)
-                                          : infinity);
+    for (size_t i = 0; i < axis_count; ++i) {
+        if (ways[i] == 0.0) continue;
+        if (legs.back().arc.motion && !is_rotary(i)) ways[i] = core::length_of(legs);
+        const std::optional<double> acceleration = blended_acceleration(legs, i, machine);
+        if (!acceleration) return infinity;
+        square = std::max(square, 2.0 * left * ways[i] / *acceleration);
+    }
     return cycle * std::sqrt(square);
 }
 
@@ -429,6 +477,7 @@ CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> af
     const auto first = before.empty() ? std::nullopt : rates_of(before.back()),
                second = after.empty() ? std::nullopt : rates_of(after.front());
     CornerBlend blend{{middle, end}};
+    blend.left = 0.5 * cycle;
     if (!first || !second) {
         // Some of the first motion is left when the second one begins, so its path is that far off.
         if (has_speeds) blend.left = share_left(before, most_override, machine);
@@ -447,7 +496,7 @@ CornerBlend blend_of_others(std::span<const Leg> before, std::span<const Leg> af
                 square += change * change;
         }
         const double half = 0.5 * angle_between(cosine);
-        double rest = middle; // of the first motion when the second one begins
+        double rest = cycle * middle; // of the first motion when the second one begins
         if (half > least_angle)
             rest = std::min(rest, longer * cycle * 2.0 * tolerance / core::sin(half - least_angle));
         const double least = least_along(*first, machine), speed = most_override * first->speed;

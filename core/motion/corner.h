@@ -20,6 +20,12 @@ struct CornerRegion {
 /// Source: docs/decisions/distance.md, "Rounded corners".
 double rounding_reach(double deviation, double turn);
 
+/// Whether a motion is so short that controls leave it out; the motions beside it meet then.
+bool is_left_out(const Motion& motion);
+
+/// Legs on which an axis stays where it moves by less than a control counts.
+std::vector<Leg> without_rounding(std::span<const Leg> legs);
+
 /// Length of a path in the linear axes, mm; for boxes of possible positions, at least that.
 double length_of(std::span<const Leg> legs);
 

@@ -243,7 +243,7 @@ void note_joined(RoundedCorners& corners, const Motion& motion, const std::vecto
 
 void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path) {
     constexpr size_t most_legs = 4096; // more chords of an arc are longer than any rounding
-    if (motion.from == motion.to && !motion.arc) return;
+    if (is_left_out(motion)) return;
     const std::vector<Leg> lines = lines_of_arc(motion, path, corners.arcs_as_lines());
     const std::vector<Leg>& legs = lines.empty() ? path.legs : lines;
     note_joined(corners, motion, legs);
@@ -254,7 +254,7 @@ void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path
     // From an unknown start, the whole region was checked, or is reported as unchecked.
     if (legs.empty() || !legs.front().start_known) return;
     const size_t first = legs.size() > most_legs ? legs.size() - most_legs : 0;
-    corners.last.legs.assign(legs.begin() + static_cast<std::ptrdiff_t>(first), legs.end());
+    corners.last.legs = without_rounding(std::span(legs).subspan(first));
 }
 
 std::vector<Leg> CornerStart::legs_with_joined() const {

@@ -583,8 +583,10 @@ InterpreterState initial_state(const Environment& environment) {
     modal.offsets.work = tables.work[0];
     if (environment.control.answer(ControlQuestion::starts_without_work) == true)
         leave_work_offset(modal);
-    if (environment.machine && environment.machine->has_rotary())
-        modal.offsets.machine = environment.machine.get();
+    const auto is_there = [](const core::MachineAxis& axis) { return axis.present; };
+    if (const core::Machine* machine = environment.machine.get();
+        machine && std::any_of(machine->axes.begin() + 3, machine->axes.end(), is_there))
+        modal.offsets.machine = machine;
     restore_offsets(state, environment);
     begin_kinematics(modal, environment);
     Position start = environment.start;

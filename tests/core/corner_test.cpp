@@ -322,7 +322,7 @@ TEST(CornerBlend, LeavesAnAxisHalfWayBackIfTheOthersGoOnWithoutIt) {
     const Machine machine = machine_with(500.0);
     const std::vector<Leg> turn = {turning_leg(0, 0, 0, 90)}, go = {turning_leg(0, 90, 40, 90)};
     CornerBlend blend = blend_at(turn, go, 0.05, CornerKind::feeds, machine);
-    EXPECT_NEAR(blend.turn, std::numbers::pi / 4.0, 1e-12);
+    EXPECT_NEAR(blend.turn, 1.05 * std::numbers::pi / 4.0, 1e-12);
     EXPECT_EQ(blend.deviation, 0.0);
     // From 48 mm/s with 225 mm/s2.
     blend = blend_at(go, turn, 0.05, CornerKind::feeds, machine);
@@ -341,7 +341,7 @@ TEST(CornerBlend, OfAxesThatMoveWithTheOthersIsWhatTheyChangeDifferently) {
     const std::vector<Leg> before = {turning_leg(0, 0, 10, 5)}, after = {turning_leg(10, 5, 20, 8)};
     // At most half of the first motion is made together with the second one.
     CornerBlend blend = blend_at(before, after, 0.05, CornerKind::feeds, machine);
-    EXPECT_NEAR(blend.turn, 5.0 * 0.2 * std::numbers::pi / 180.0, 1e-12);
+    EXPECT_NEAR(blend.turn, 1.05 * 5.0 * 0.2 * std::numbers::pi / 180.0, 1e-12);
     EXPECT_NEAR(blend.deviation, 0.0, 1e-12);
     // With 225 mm/s2 it brakes from 12 mm/s within 0.32 mm.
     machine.axes[3].acceleration = 1000.0;
@@ -394,6 +394,33 @@ TEST(CornerBlend, LeavesAtLeastWhatThePlannerOfLinuxcncDoesOfATurningMotion) {
     EXPECT_GT(made_close, 100U);
 }
 
+Motion arc_about(const Vec3& centre, const AxisPosition& from, const AxisPosition& to,
+                 double degrees) {
+    Motion motion{.kind = MotionKind::arc, .from = from, .to = to, .feed = 600.0};
+    motion.arc = ArcPath{.centre = centre, .angle = degrees * std::numbers::pi / 180.0};
+    return motion;
+}
+
+TEST(CornerBlend, LeavesMoreOfAnArcThanOfALine) {
+    // Along an arc, LinuxCNC brakes with half of what the slowest axis can.
+    Machine machine = machine_with(5000.0);
+    machine.axes[1].acceleration = 300.0;
+    machine.axes[3].present = true;
+    machine.axes[3].acceleration = 5000.0;
+    Motion arc = arc_about(Vec3(0, 0, 0), {0, -50, 0}, {50, 0, 0}, 90.0);
+    arc.feed = 4800.0; // 80 mm/s
+    arc.from[3] = arc.to[3] = 0.0;
+    std::vector<Leg> before = path_of(arc, machine, 1e-3).legs;
+    const Leg turn{.positions = {AxisValues{50, 0, 0, 0}, AxisValues{50, 0, 0, 50}}, .end = 1.0};
+    const double length = length_of(before);
+    // The rest is v^2 / (2 a) with 96 mm/s.
+    EXPECT_NEAR(blend_at(before, {&turn, 1}, 0.05, CornerKind::feeds, machine).left,
+                std::min(0.525, 1.05 * 96.0 * 96.0 / (2.0 * 0.225 * 300.0) / length), 1e-3);
+    for (Leg& leg : before) leg.arc = {}; // its last chord is along Y
+    EXPECT_NEAR(blend_at(before, {&turn, 1}, 0.05, CornerKind::feeds, machine).left,
+                1.05 * 96.0 * 96.0 / (2.0 * 0.45 * 300.0) / length, 0.02);
+}
+
 TEST(CornerBlend, OfFeedsNeedsNoSpeedsOfAxes) {
     Machine machine = machine_with(500.0);
     Leg before = leg({-50, 0, 0}, {0, 0, 0}), after = leg({0, 0, 0}, {0, 50, 0});
@@ -407,13 +434,6 @@ TEST(CornerBlend, OfFeedsNeedsNoSpeedsOfAxes) {
     EXPECT_EQ(blend(CornerKind::feeds).deviation, feeds.deviation);
     EXPECT_EQ(blend(CornerKind::feeds).reach.after, feeds.reach.after);
     EXPECT_GT(blend(CornerKind::rapids).reach.after, rapids.reach.after);
-}
-
-Motion arc_about(const Vec3& centre, const AxisPosition& from, const AxisPosition& to,
-                 double degrees) {
-    Motion motion{.kind = MotionKind::arc, .from = from, .to = to, .feed = 600.0};
-    motion.arc = ArcPath{.centre = centre, .angle = degrees * std::numbers::pi / 180.0};
-    return motion;
 }
 
 TEST(LinesOfArc, AreTwoChordsWithinTheToleranceAboutZ) {

@@ -205,7 +205,7 @@ TEST(RoundedCorners, AreOffOnlyAlongTheMotionThatMayNotHaveEnded) {
         feed(upright, tilted);
         return corner.verdicts.back();
     };
-    EXPECT_EQ(verdict(25.0, 20.0), Verdict::clear);
+    EXPECT_EQ(verdict(30.0, 20.0), Verdict::clear);
     EXPECT_EQ(verdict(10.0, 20.0), Verdict::undecided);
     EXPECT_EQ(verdict(10.0, -20.0), Verdict::clear) << "the other way round";
 }
@@ -265,6 +265,59 @@ TEST(RoundedCorners, OfRapidsBeginWhileAnAxisOfRotationStillTurns) {
     EXPECT_EQ(verdict(at_speed), Verdict::undecided);
     EXPECT_EQ(verdict(unknown), Verdict::undecided);
     EXPECT_EQ(verdict(fast), Verdict::clear);
+}
+
+TEST(RoundedCorners, AreThereAlsoWithAMotionOfRoundingErrorsBetween) {
+    // LinuxCNC leaves it out, so the motions beside it meet.
+    core::Setup setup = with_tilting_head(10.0, 5.0);
+    const double z = setup.tools.at(ToolNumber{1}).length;
+    Corner corner(std::move(setup));
+    PathModeChange mode = within(0.02);
+    mode.blends = mode.blends_at_arcs = true;
+    corner.give({mode});
+    const double error = 0.1 + 0.2 - 0.3;
+    const AxisPosition start = {-150, 0, z, 0}, there = {50, 0, z, 0}, again = {50, error, z, 0},
+                       tilted = {50, 0, z, 20};
+    const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
+        corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0}});
+    };
+    corner.give({Motion{.kind = MotionKind::rapid, .from = start, .to = start}});
+    feed(start, there);
+    feed(there, again);
+    EXPECT_EQ(corner.verdicts.back(), Verdict::clear);
+    feed(again, tilted);
+    EXPECT_EQ(corner.verdicts.back(), Verdict::undecided);
+}
+
+TEST(RoundedCorners, CutOnlyWhereTheSpindleTurns) {
+    // A tilts the tool back to upright before it comes over the stock, with 0.02 mm to spare. At 5
+    // degrees the edge of its end is 0.2 mm lower.
+    const auto verdict = [](SpindleDirection spindle) {
+        core::Setup setup = with_tilting_head(100.0, 5.0);
+        setup.stock = {SolidBox{{{-140, -50, -10}, {300, 50, 0}}}, 0.0};
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        Corner corner(std::move(setup));
+        corner.give({SpindleChange{spindle, 5000.0}});
+        PathModeChange mode = within(0.02);
+        mode.blends = mode.blends_at_arcs = true;
+        corner.give({mode});
+        const AxisPosition tilted = {-150, 0, z + 0.02, 15}, upright = {-150, 0, z + 0.02, 0},
+                           past = {0, 0, z + 0.02, 0};
+        const auto go = [&](MotionKind kind, const AxisPosition& from, const AxisPosition& to) {
+            const std::vector<Event> events{Motion{.kind = kind,
+                                                   .from = from,
+                                                   .to = to,
+                                                   .feed = kind == MotionKind::feed ? 600.0 : 0.0}};
+            return run_block(corner.setup, {BlockIndex{corner.block++}, false, events},
+                             corner.state)
+                .verdict;
+        };
+        go(MotionKind::rapid, tilted, tilted);
+        go(MotionKind::feed, tilted, upright);
+        return go(MotionKind::feed, upright, past);
+    };
+    EXPECT_EQ(verdict(SpindleDirection::clockwise), Verdict::clear);
+    EXPECT_EQ(verdict(SpindleDirection::stopped), Verdict::undecided);
 }
 
 TEST(RoundedCorners, ReachBackThroughSmallArcsThatAreTakenForLines) {

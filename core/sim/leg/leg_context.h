@@ -16,8 +16,8 @@ class CutReplay;
 struct CutModel;
 struct Setup;
 
-/// Whether material that the flutes meet is cut or is a collision.
-enum class FluteUse : uint8_t { cutting, not_cutting };
+/// Whether material that the flutes meet is cut or is a collision, or the flutes are not looked at.
+enum class FluteUse : uint8_t { cutting, not_cutting, ignored };
 
 /// The position of a turning body is accurate enough if its error is at most this fraction of its
 /// clearance.

@@ -163,6 +163,7 @@ bool StockCheck::check_bodies(const Leg& leg, double start, const CutModel& stoc
     bool gouged = false;
     for (const MovingBody* body : context_.likely_first({})) {
         if (only_tool_ && body->body) continue;
+        if (body->kind == PartKind::flutes && context_.use == FluteUse::ignored) continue;
         TrackedPair& known = bounds_.tracked_pair(pairs, pair_of(*body));
         if (body->kind != PartKind::flutes && stays_undecided(known, leg)) continue;
         if (bounds_.can_skip(known, pairs, travel_of(*body, leg))) continue;
@@ -243,7 +244,8 @@ void StockCheck::check_turning_body(const MovingBody& body, const Leg& leg, doub
     if (is_far(known, apart, context_.setup.search_limit)) return;
     if (!context_.is_too_vague(relative)) {
         // For a large and distant body, the box of the raw stock is usually enough.
-        const double from_box = probe_.distance_to_box(body, relative, stock.outer_box);
+        const double from_box =
+            body.body ? probe_.distance_to_box(body, relative, stock.outer_box) : 0.0;
         if (from_box >= std::max(known.allowance.distance, resolution)) {
             known.lower = std::min({known.lower, from_box, context_.setup.search_limit});
             known.at_end = from_box;
@@ -351,6 +353,11 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
 }
 
 double StockCheck::check(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs) {
+    if (context_.use == FluteUse::ignored) {
+        for (const MovingBody& body : context_.bodies)
+            if (body.kind != PartKind::flutes) check_turning_body(body, leg, start, stock, pairs);
+        return 0.0;
+    }
     const bool turns = context_.setup.machine.has_rotary() && leg.positions.size() == 2
                        && turn_of(context_.setup.machine, leg.positions[0], leg.positions[1]) > 0.0;
     if (turns) {

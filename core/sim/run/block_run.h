@@ -35,12 +35,11 @@ struct BlockRun {
     bool turns = false;                 // whether rotary axes move
     bool pushes_centre = false;         // the non-cutting centre is pushed down into the stock
     bool drills_sideways = false;
-    bool flutes_meet_stock = false; // at a corner
-    bool leaves_contact = false;    // a probing move that ends when its contact is lost
-    bool is_uncertain = false;      // a motion is a probing move, or starts where one ended
-    double off_path = 0.0;          // deviation of its feeds by rounded corners, mm
-    double off_path_rapids = 0.0;   // likewise of its rapids
-    double off_by_axes = 0.0;       // of all its motions by the tolerances of axes of rotation, mm
+    bool leaves_contact = false;  // a probing move that ends when its contact is lost
+    bool is_uncertain = false;    // a motion is a probing move, or starts where one ended
+    double off_path = 0.0;        // deviation of its feeds by rounded corners, mm
+    double off_path_rapids = 0.0; // likewise of its rapids
+    double off_by_axes = 0.0;     // of all its motions by the tolerances of axes of rotation, mm
     size_t moves_before = state.stock.log.size(); // that cut the stock before the block
     RoundedCorners corners_before = state.corners;
 
@@ -174,12 +173,17 @@ struct BlockRun {
     void check_rest(const Path& path);
     void check_corner(const Motion& motion, const Path& path);
     /// The corner before lines that may be joined with these.
-    void check_joined_after_corner(const Path& path);
+    void check_joined_after_corner(const Motion& motion, const Path& path);
     /// A corner of LinuxCNC at which other axes than X, Y and Z move.
     void check_turning_corner(const Motion& motion, const Path& path,
                               const std::vector<Leg>& before, const CornerBlend& blend);
     /// Checks legs that the machine makes while it ends the motion of which `last.rest` is left.
     void check_beside_rest(const std::vector<Leg>& legs, bool may_cut);
+    /// Whether the flutes may meet the stock at the corner where a motion begins, because they cut
+    /// in it or in the feed before.
+    bool flutes_may_cut(const Motion& motion) const;
+    /// Whether the flutes may come as far as the stock's box on legs.
+    bool flutes_reach_stock(const std::vector<Leg>& legs) const;
     /// How far the flutes may be off their cuts while the rotary axes are off by `turn`, radians.
     double off_by_turn(const std::vector<Leg>& legs, double turn) const;
     /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the

@@ -67,6 +67,21 @@ void BlockRun::note_axis_tolerances(const Path& path) {
                              "tolerances; clearances include these");
 }
 
+bool BlockRun::flutes_may_cut(const Motion& motion) const {
+    if (motion.kind != MotionKind::rapid) return use(motion) == FluteUse::cutting;
+    return tool() && turns_to_cut(state.spindle, *tool());
+}
+
+bool BlockRun::flutes_reach_stock(const std::vector<Leg>& legs) const {
+    for (const MovingBody& body : moving_bodies(setup, *tool()))
+        for (const Leg& leg : legs)
+            if (body.kind == PartKind::flutes
+                && distance(bounds(body, leg_against(setup, {}, body, leg)), state.stock.outer_box)
+                       <= 0.0)
+                return true;
+    return false;
+}
+
 double BlockRun::off_by_turn(const std::vector<Leg>& legs, double turn) const {
     const std::vector<MovingBody> bodies = moving_bodies(setup, *tool());
     const auto flutes = std::find_if(bodies.begin(), bodies.end(), [](const MovingBody& body) {
@@ -135,19 +150,19 @@ Leg off_path_by(Leg leg, const CornerBlend& blend) {
 void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     const CornerStart& last = state.corners.last;
     if (!last.kind) state.corners.left_after = 0.0;
-    if (!last.kind) return;
+    if (!last.kind || is_left_out(motion)) return;
     // A small arc may be lines.
-    Path as_lines{.legs = lines_of_arc(motion, programmed, state.corners.arcs_as_lines()),
-                  .duration = programmed.duration};
-    const Path& path = as_lines.legs.empty() ? programmed : as_lines;
-    const bool is_arc = motion.arc && as_lines.legs.empty();
+    const std::vector<Leg> lines = lines_of_arc(motion, programmed, state.corners.arcs_as_lines());
+    const Path path{.legs = without_rounding(lines.empty() ? programmed.legs : lines),
+                    .duration = programmed.duration};
+    const bool is_arc = motion.arc && lines.empty();
     const bool rapid = motion.kind == MotionKind::rapid, was = *last.kind == MotionKind::rapid;
     const bool between_feeds = !rapid && !was;
     const bool at_arc = is_arc || last.is_arc;
     const bool at_others =
         rapid == was && (moves_other_axes(path.legs) || moves_other_axes(last.legs));
     // The whole feed counts as rounded, but for what is left of a corner before it.
-    if (between_feeds && !at_arc && !at_others) return check_joined_after_corner(path);
+    if (between_feeds && !at_arc && !at_others) return check_joined_after_corner(motion, path);
     state.corners.left_after = 0.0;
     const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
     if (at_others && between_feeds && !limit.rounds() && last.by > 0.0)
@@ -191,20 +206,21 @@ void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     // Between straight moves the curve is within a triangle that begins and ends at the reach.
     if (between_feeds) region->hull = off_path_by(std::move(region->hull), blend);
     region->hull.begin = region->hull.end = 0.0;
-    check_region({region->hull}, region->along, deviation, !(rapid && was));
+    check_region({region->hull}, region->along, deviation,
+                 !(rapid && was) && flutes_may_cut(motion));
 }
 
-void BlockRun::check_joined_after_corner(const Path& path) {
+void BlockRun::check_joined_after_corner(const Motion& motion, const Path& path) {
     RoundedCorners& corners = state.corners;
     if (!(corners.left_after > 0.0)) return;
     std::vector<Leg> legs = path.legs;
     const double length = length_of(legs), left = corners.left_after;
     if (legs.size() == 1 && left < length) legs[0] = stretch(legs[0], 0.0, left / length);
     corners.left_after -= length;
-    if (!corners.last.rest.empty()) return check_beside_rest(legs, true);
+    if (!corners.last.rest.empty()) return check_beside_rest(legs, flutes_may_cut(motion));
     const CornerBlend blend{.deviation = corners.off_after};
     for (Leg& leg : legs) leg = off_path_by(std::move(leg), blend);
-    check_region(legs, {}, 0.0, true);
+    check_region(legs, {}, 0.0, flutes_may_cut(motion));
 }
 
 void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
@@ -244,11 +260,13 @@ void BlockRun::check_turning_corner(const Motion& motion, const Path& path,
     corners.last.rest = std::move(rest);
     if (!rapid && corners.joining > 0.0 && !moves_other_axes(path.legs))
         corners.left_after = (blend.part_after - 1.0) * length_of(path.legs);
-    flutes_meet_stock = false;
-    check_beside_rest(meanwhile, !rapid);
-    if (flutes_meet_stock && use(motion) == FluteUse::cutting)
-        corners.of_cuts =
-            std::max(corners.of_cuts, blend.deviation + off_by_turn(meanwhile, blend.turn));
+    const bool may_cut = !rapid && flutes_may_cut(motion);
+    check_beside_rest(meanwhile, may_cut);
+    const AxisValues& corner = corners.last.rest.back().positions.back();
+    for (const Leg& leg : corners.last.rest)
+        if (may_cut && flutes_reach_stock(displaced(meanwhile, leg, 0.0, 1.0, corner)))
+            corners.of_cuts =
+                std::max(corners.of_cuts, blend.deviation + off_by_turn(meanwhile, blend.turn));
 }
 
 void BlockRun::check_beside_rest(const std::vector<Leg>& legs, bool may_cut) {
@@ -283,29 +301,26 @@ bool BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
     memory.off_path = deviation + off_by_axes + state.corners.of_stock();
-    CutModel stock = state.stock; // a collision in the region must not cut the run's stock
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
     CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_stock()};
+    // At the corner of a cut, the flutes may already, or still, cut. Otherwise a collision must not
+    // cut the run's stock.
+    const FluteUse use = may_cut ? FluteUse::ignored : FluteUse::not_cutting;
+    std::optional<CutModel> copy;
+    if (!may_cut) copy = state.stock;
+    CutModel& stock = copy ? *copy : state.stock;
     for (const Leg& leg : anywhere)
-        leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.anywhere);
-    // At the corner of a cut, the flutes may already, or still, cut.
-    const auto is_cut = [&](const TrackedPair& pair) {
-        return may_cut && pair.pair == Pair{PartKind::flutes};
-    };
+        leg_check(use, memory).run(leg, result.duration, stock, corner.anywhere);
     const bool is_clear =
-        std::all_of(corner.anywhere.begin(), corner.anywhere.end(), [&](const TrackedPair& pair) {
-            return pair.verdict == Verdict::clear || is_cut(pair);
-        });
+        std::all_of(corner.anywhere.begin(), corner.anywhere.end(),
+                    [&](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
     for (const Leg& leg : along)
-        if (!is_clear)
-            leg_check(FluteUse::not_cutting, memory).run(leg, result.duration, stock, corner.along);
+        if (!is_clear) leg_check(use, memory).run(leg, result.duration, stock, corner.along);
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
     if (only_if_clear && !is_clear) return false;
     for (const TrackedPair& pair : corner.anywhere) {
-        if (is_cut(pair)) flutes_meet_stock = flutes_meet_stock || pair.lower <= 0.0;
-        if (is_cut(pair)) continue;
         auto now = corner.clearance(pair, !along.empty());
         if (!now) continue;
         now->time = result.duration;
