@@ -546,10 +546,11 @@ std::vector<Leg> last_part(std::span<const Leg> legs, double part) {
         const Leg& leg = legs[n - 1];
         const double size = size_of(leg);
         last.push_back(size > left ? stretch(leg, 1.0 - left / size, 1.0) : leg);
-        last.back().arc = {};
         left -= size;
     }
+    if (last.empty()) last.assign(legs.rbegin(), legs.rend()); // neither times nor lengths
     std::reverse(last.begin(), last.end());
+    for (Leg& leg : last) leg.arc = {};
     return last;
 }
 

@@ -515,6 +515,10 @@ TEST(LastPart, IsThatOfTheTimeOrElseOfTheLength) {
     last = last_part(legs, 0.75);
     ASSERT_EQ(last.size(), 2U);
     EXPECT_NEAR(last[0].positions[0][0], 3.0, 1e-12);
+    const Leg turn{.positions = {AxisValues{0, 0, 0, 0}, AxisValues{0, 0, 0, 90}}};
+    last = last_part({&turn, 1}, 0.5);
+    ASSERT_EQ(last.size(), 1U) << "all of it, because it has neither";
+    EXPECT_EQ(last[0].positions, turn.positions);
 }
 
 TEST(CornerBlend, CountsFourTimesTheToleranceWithoutAccelerations) {
