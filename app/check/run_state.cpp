@@ -55,6 +55,7 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     add(digest, corners.rapids);
     add(digest, corners.mixed);
     add(digest, corners.arcs);
+    add(digest, corners.turns);
     digest.add(corners.last.by);
     digest.add(corners.left_after);
     digest.add(corners.off_after);

@@ -606,7 +606,8 @@ void settle_start(SetupFile& file) {
     }
     assume_start(file);
     assume_home(file);
-    if (file.setup.machine.has_rotary())
+    const auto& axes = file.setup.machine.axes;
+    if (std::any_of(axes.begin() + 3, axes.end(), [](const auto& axis) { return axis.present; }))
         file.environment.machine = std::make_shared<const core::Machine>(file.setup.machine);
 }
 

@@ -470,7 +470,8 @@ std::optional<LimitingPair> Enclosure::judge_corner(Run& run, size_t event,
         const bool at_others = others || last_others;
         const bool is_rounded_more =
             rapid ? last.rapids.blends() && at_others
-                  : last.arcs.rounds() && (motion.arc || last.is_arc || at_others);
+                  : (last.arcs.rounds() && (motion.arc || last.is_arc || at_others))
+                        || (last.turns.rounds() && at_others);
         const bool is_simulated = is_one_kind && (exact || !has_hull(event, motion, run.frame));
         if ((is_rounded_more && !(is_simulated && !last.legs.empty()))
             || (!rapid && corners.left_after > 0.0 && !is_simulated))

@@ -163,7 +163,7 @@ CornerLimit smaller(const CornerLimit& a, const CornerLimit& b) {
 
 void change_mode(RoundedCorners& corners, const PathModeChange& change, const Machine& machine) {
     corners.by = corners.by_arc = 0.0;
-    corners.rapids = corners.mixed = corners.arcs = {};
+    corners.rapids = corners.mixed = corners.arcs = corners.turns = {};
     corners.joining = change.joining;
     corners.left_after = corners.off_after = 0.0;
     corners.unknown = corners.unknown_rapids = false;
@@ -181,6 +181,8 @@ void change_mode(RoundedCorners& corners, const PathModeChange& change, const Ma
     const bool keeps_speed = change.rapids_keep_speed && !machine.rapid_corner_tolerance;
     if (keeps_speed) corners.rapids = {.deviation = infinity, .blended = infinity};
     if (change.blends_at_arcs && feeds.blends()) corners.arcs = feeds;
+    // A tolerance would not limit these.
+    corners.turns = keeps_speed && !machine.corner_tolerance ? corners.rapids : corners.arcs;
     if (corners.arcs.rounds()) corners.reach_of_speed = 2.0 * most_reach_of_speed(machine);
     if (change.between_kinds) corners.mixed = smaller(feeds, corners.rapids);
     corners.unknown = !is_stated(change.tolerance, change.distance, machine.corner_tolerance);
@@ -203,6 +205,7 @@ void RoundedCorners::end(MotionKind kind, bool is_arc) {
     last.rapids = rapids;
     last.mixed = mixed;
     last.arcs = is_feed ? arcs : CornerLimit();
+    last.turns = is_feed ? turns : CornerLimit();
 }
 
 namespace {
@@ -250,7 +253,7 @@ void note_corner(RoundedCorners& corners, const Motion& motion, const Path& path
     corners.end(motion.kind, motion.arc.has_value());
     if (!lines.empty()) corners.last.is_arc = false;
     const bool rapid = motion.kind == MotionKind::rapid;
-    if (!(rapid ? corners.rapids : corners.arcs).rounds() && !corners.mixed.rounds()) return;
+    if (!(rapid ? corners.rapids : corners.turns).rounds() && !corners.mixed.rounds()) return;
     // From an unknown start, the whole region was checked, or is reported as unchecked.
     if (legs.empty() || !legs.front().start_known) return;
     const size_t first = legs.size() > most_legs ? legs.size() - most_legs : 0;

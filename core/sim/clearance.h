@@ -132,14 +132,14 @@ struct CornerStart {
     CornerStart& operator=(CornerStart&&) noexcept;
     ~CornerStart();
 
-    std::optional<MotionKind> kind;  // empty: the machine comes from rest
-    bool is_arc = false;             // and not taken for lines
-    bool joins = false;              // it may be joined with straight feeds
-    std::vector<Leg> legs;           // its last legs, if the corner after it may be rounded
-    std::vector<AxisValues> joined;  // starts of the lines before it that may be joined with it
-    std::vector<Leg> rest;           // of a motion that may not have ended yet
-    double by = 0.0;                 // of a feed: how far it deviates
-    CornerLimit rapids, mixed, arcs; // as in `RoundedCorners`, when it was programmed
+    std::optional<MotionKind> kind; // empty: the machine comes from rest
+    bool is_arc = false;            // and not taken for lines
+    bool joins = false;             // it may be joined with straight feeds
+    std::vector<Leg> legs;          // its last legs, if the corner after it may be rounded
+    std::vector<AxisValues> joined; // starts of the lines before it that may be joined with it
+    std::vector<Leg> rest;          // of a motion that may not have ended yet
+    double by = 0.0;                // of a feed: how far it deviates
+    CornerLimit rapids, mixed, arcs, turns; // as in `RoundedCorners`, when it was programmed
 
     /// `legs` after the lines that may be joined with them.
     std::vector<Leg> legs_with_joined() const;
@@ -151,12 +151,13 @@ struct CornerStart {
 /// control joins, so a whole feed is assumed to deviate as far as its corners. Rapids are not
 /// joined: they deviate only at the corner between two of them, which belongs to the second.
 struct RoundedCorners {
-    double by = 0.0;             // of feeds in the current mode; 0 under exact stops
-    double by_arc = 0.0;         // of feeds on arcs
-    double of_cuts = 0.0;        // largest of all feeds that cut: the stock's own uncertainty
-    double mode_of_cuts = 0.0;   // largest `by` of all modes in which feeds cut
-    bool unknown = false;        // the control may round feeds by an unknown amount
-    CornerLimit rapids;          // between rapids; see `keeps_speed`
+    double by = 0.0;           // of feeds in the current mode; 0 under exact stops
+    double by_arc = 0.0;       // of feeds on arcs
+    double of_cuts = 0.0;      // largest of all feeds that cut: the stock's own uncertainty
+    double mode_of_cuts = 0.0; // largest `by` of all modes in which feeds cut
+    bool unknown = false;      // the control may round feeds by an unknown amount
+    CornerLimit rapids;        // between rapids; see `keeps_speed`
+    CornerLimit turns;         // between feeds of which one hardly moves X, Y and Z, but other axes
     bool unknown_rapids = false; // the control may round rapids by an unknown amount
     CornerLimit mixed;           // between a rapid and a feed
     // Between feeds of which one is an arc, or moves other axes than X, Y and Z: if it is farther

@@ -49,7 +49,7 @@ struct Move {
         const Offsets& offsets = modal.offsets;
         const bool is_plain =
             !modal.following.may_be_on && !offsets.follows_tip && !offsets.tilted_plane;
-        if (is_rotary(axis) && (!is_plain || modal.unit == LengthUnit::inch)) return false;
+        if (is_rotary(axis) && !is_plain) return false;
         has_axis = true;
         if (std::abs(word.value) > largest_quick_value) return false;
         const double value = is_rotary(axis) ? word.value : to_mm(word.value, modal.unit);

@@ -13,17 +13,6 @@
 namespace gcode {
 namespace {
 
-/// Whether only rotary axes move.
-bool turns_only(const Position& from, const Position& to) {
-    bool turns = false;
-    for (size_t axis = 0; axis < axis_count; ++axis) {
-        if (from[axis] == to[axis]) continue;
-        if (!is_rotary(axis)) return false;
-        turns = true;
-    }
-    return turns;
-}
-
 using core::ErrorCode;
 
 /// On controls with a default feed rate, the first feed move without F uses it.
@@ -54,11 +43,7 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     const bool needs_way = execution.modal().feed_mode == FeedMode::inverse_time;
     const std::optional<double> way =
         needs_way ? distance_between(execution.modal().position, end) : std::nullopt;
-    FEELER_TRY(double rate, feed_rate(execution, way));
-    const ModalState& modal = execution.modal();
-    // F of a motion of rotary axes alone is in degrees, also under G20.
-    if (modal.feed_mode == FeedMode::per_minute && turns_only(modal.position, end))
-        rate = from_mm(rate, modal.unit);
+    FEELER_TRY(const double rate, feed_rate(execution, way));
     execution.feed(end, rate);
     return {};
 }

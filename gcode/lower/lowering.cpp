@@ -89,6 +89,13 @@ struct Visitor {
     core::AxisSet settles;
     std::vector<core::Event> events;
 
+    /// LinuxCNC waits for the end of a motion before most commands that are not motions.
+    ///
+    /// Source: emctaskmain.cc, emcTaskCheckPreconditions.
+    void come_to_rest() {
+        if (lowering.blends_like_linuxcnc) events.emplace_back(core::Dwell{});
+    }
+
     void note_axis(size_t axis) {
         const core::Machine* machine = lowering.offsets.machine;
         const bool is_there = machine ? machine->axes[axis].present : axis < 3;
@@ -245,16 +252,21 @@ struct Visitor {
     void operator()(const Spindle& command) {
         lowering.spindle_speed = command.speed;
         events.emplace_back(core::SpindleChange{command.direction, command.speed});
+        come_to_rest();
     }
     void operator()(const UseToolLengthOffset& command) {
         lowering.offsets.tool = command.offset;
         lowering.offsets.follows_tip = command.follows_tip;
         events.emplace_back(
             core::LengthOffsetChange{command.number, command.offset[2], command.is_assumed});
+        come_to_rest();
     }
-    void operator()(const SetOffset& command) { lowering.offsets = command.offsets; }
+    void operator()(const SetOffset& command) {
+        lowering.offsets = command.offsets;
+        come_to_rest();
+    }
     void operator()(const SelectTool&) {}
-    void operator()(const Coolant&) {}
+    void operator()(const Coolant&) { come_to_rest(); }
     void operator()(const SelectPlane&) {}
     void operator()(const UseSpindleMode&) {}
     void operator()(const SetPathMode& command) {
@@ -269,6 +281,7 @@ struct Visitor {
         change.blends = change.blends_at_arcs = command.corners.blends;
         change.rapids_keep_speed = command.corners.rapids_keep_speed;
         change.between_kinds = command.corners.between_kinds;
+        lowering.blends_like_linuxcnc = change.blends || change.rapids_keep_speed;
         events.emplace_back(change);
     }
     void operator()(const EnableOverride&) {}
@@ -276,7 +289,7 @@ struct Visitor {
     void operator()(const WaitForInput&) {}
     void operator()(const Message&) {}
     void operator()(const ProgramStop&) { events.emplace_back(core::Dwell{}); }
-    void operator()(const OptionalStop&) {}
+    void operator()(const OptionalStop&) { come_to_rest(); }
     void operator()(const ProgramEnd&) {}
 };
 
@@ -324,6 +337,8 @@ Lowering initial_lowering(const InterpreterState& state) {
     Lowering lowering;
     lowering.offsets = state.modal.offsets;
     lowering.machine = machine_from_program(state.modal.offsets, state.modal.position);
+    const CornerTolerances& corners = state.modal.corner_tolerances;
+    lowering.blends_like_linuxcnc = corners.blends || corners.rapids_keep_speed;
     return lowering;
 }
 

@@ -27,6 +27,7 @@ struct Lowering {
     double spindle_speed = 0.0;         // rev/min
     std::optional<size_t> other_axis{}; // first axis that moved but that the machine does not have
     bool moved_tilted = false;          // moved with the tool tilted in an unknown way
+    bool blends_like_linuxcnc = false;  // many commands between motions bring it to rest
 
     /// The events of a command in machine coordinates; empty for most modes and for messages. A
     /// program stop is a dwell of zero length: the machine comes to rest.

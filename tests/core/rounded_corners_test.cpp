@@ -289,6 +289,27 @@ TEST(RoundedCorners, AreThereAlsoWithAMotionOfRoundingErrorsBetween) {
     EXPECT_EQ(corner.verdicts.back(), Verdict::undecided);
 }
 
+TEST(RoundedCorners, OfTurningFeedsNeedNoTolerance) {
+    const auto verdict = [](bool at_speed) {
+        core::Setup setup = with_tilting_head(10.0, 5.0);
+        const double z = setup.tools.at(ToolNumber{1}).length;
+        Corner corner(std::move(setup));
+        PathModeChange mode{Blending::continuous, {}};
+        mode.rapids_keep_speed = at_speed; // LinuxCNC's G64 without P
+        corner.give({mode});
+        const AxisPosition start = {-150, 0, z, 0}, there = {50, 0, z, 0}, tilted = {50, 0, z, 20};
+        const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
+            corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0}});
+        };
+        corner.give({Motion{.kind = MotionKind::rapid, .from = start, .to = start}});
+        feed(start, there);
+        feed(there, tilted);
+        return corner.verdicts.back();
+    };
+    EXPECT_EQ(verdict(true), Verdict::undecided);
+    EXPECT_EQ(verdict(false), Verdict::clear) << "other controls";
+}
+
 TEST(RoundedCorners, CutOnlyWhereTheSpindleTurns) {
     // A tilts the tool back to upright before it comes over the stock, with 0.02 mm to spare. At 5
     // degrees the edge of its end is 0.2 mm lower.

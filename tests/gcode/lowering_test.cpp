@@ -169,6 +169,22 @@ TEST(Lowering, UnknownAxesStayEmpty) {
     EXPECT_EQ(linear(motions[2].to), (Linear{1.0, 2.0, 5.0}));
 }
 
+TEST(Lowering, RestsWhereLinuxcncWaitsForTheEndOfAMotion) {
+    const auto rests = [](const std::string& mode, DialectId id = DialectId::linuxcnc) {
+        Environment environment = example();
+        environment.dialect = id;
+        size_t count = 0;
+        for (const core::Event& event :
+             events_of(mode + "\nG1 F500 X10\nM8\nX20\nS500 M3\nX30\nG43 H1\nX40\nG55\nX50\nM1\n",
+                       environment))
+            count += std::holds_alternative<core::Dwell>(event);
+        return count;
+    };
+    EXPECT_EQ(rests("G64 P0.1"), 5U);
+    EXPECT_EQ(rests("G61"), 0U) << "it rests anyway";
+    EXPECT_EQ(rests("G64", DialectId::fanuc), 0U);
+}
+
 TEST(Lowering, PassesOnToolsSpindleLengthsAndDwells) {
     const auto events = events_of("T1 M6\nS500 M4\nG43 H1\nG4 P1.\nT0 M6\nG49", example());
     ASSERT_EQ(events.size(), 7u);

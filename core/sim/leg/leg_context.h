@@ -16,8 +16,13 @@ class CutReplay;
 struct CutModel;
 struct Setup;
 
-/// Whether material that the flutes meet is cut or is a collision, or the flutes are not looked at.
-enum class FluteUse : uint8_t { cutting, not_cutting, ignored };
+/// What the flutes do with material that they meet.
+enum class FluteUse : uint8_t {
+    cutting,
+    not_cutting, // a collision; it is removed, so that there is one finding
+    measured,    // a collision, and nothing is removed
+    ignored      // they are not looked at, and nothing is removed
+};
 
 /// The position of a turning body is accurate enough if its error is at most this fraction of its
 /// clearance.

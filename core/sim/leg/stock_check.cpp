@@ -353,9 +353,10 @@ double StockCheck::check_turning(const Leg& leg, double start, CutModel& stock,
 }
 
 double StockCheck::check(const Leg& leg, double start, CutModel& stock, TrackedPairs& pairs) {
-    if (context_.use == FluteUse::ignored) {
+    if (context_.use == FluteUse::ignored || context_.use == FluteUse::measured) {
         for (const MovingBody& body : context_.bodies)
-            if (body.kind != PartKind::flutes) check_turning_body(body, leg, start, stock, pairs);
+            if (body.kind != PartKind::flutes || context_.use == FluteUse::measured)
+                check_turning_body(body, leg, start, stock, pairs);
         return 0.0;
     }
     const bool turns = context_.setup.machine.has_rotary() && leg.positions.size() == 2

@@ -147,6 +147,16 @@ Leg off_path_by(Leg leg, const CornerBlend& blend) {
 
 } // namespace
 
+namespace {
+
+/// Whether a motion hardly moves X, Y and Z while other axes move.
+bool mostly_turns(const std::vector<Leg>& legs) {
+    constexpr double most = 0.5; // radians for a millimetre
+    return turned_on(legs) > most * length_of(legs);
+}
+
+} // namespace
+
 void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     const CornerStart& last = state.corners.last;
     if (!last.kind) state.corners.left_after = 0.0;
@@ -164,7 +174,12 @@ void BlockRun::check_corner(const Motion& motion, const Path& programmed) {
     // The whole feed counts as rounded, but for what is left of a corner before it.
     if (between_feeds && !at_arc && !at_others) return check_joined_after_corner(motion, path);
     state.corners.left_after = 0.0;
-    const CornerLimit& limit = between_feeds ? last.arcs : rapid && was ? last.rapids : last.mixed;
+    const bool is_turn =
+        at_others && between_feeds && (mostly_turns(path.legs) || mostly_turns(last.legs));
+    const CornerLimit& limit = is_turn         ? last.turns
+                               : between_feeds ? last.arcs
+                               : rapid && was  ? last.rapids
+                                               : last.mixed;
     if (at_others && between_feeds && !limit.rounds() && last.by > 0.0)
         state.assumptions.insert("rotary axes keep to their path where the control rounds corners "
                                  "between feeds");
@@ -304,19 +319,15 @@ bool BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
     CornerCheck corner{.deviation = deviation + off_by_axes, .of_cuts = state.corners.of_stock()};
-    // At the corner of a cut, the flutes may already, or still, cut. Otherwise a collision must not
-    // cut the run's stock.
-    const FluteUse use = may_cut ? FluteUse::ignored : FluteUse::not_cutting;
-    std::optional<CutModel> copy;
-    if (!may_cut) copy = state.stock;
-    CutModel& stock = copy ? *copy : state.stock;
+    // At the corner of a cut, the flutes may already, or still, cut.
+    const FluteUse use = may_cut ? FluteUse::ignored : FluteUse::measured;
     for (const Leg& leg : anywhere)
-        leg_check(use, memory).run(leg, result.duration, stock, corner.anywhere);
+        leg_check(use, memory).run(leg, result.duration, state.stock, corner.anywhere);
     const bool is_clear =
         std::all_of(corner.anywhere.begin(), corner.anywhere.end(),
                     [&](const TrackedPair& pair) { return pair.verdict == Verdict::clear; });
     for (const Leg& leg : along)
-        if (!is_clear) leg_check(use, memory).run(leg, result.duration, stock, corner.along);
+        if (!is_clear) leg_check(use, memory).run(leg, result.duration, state.stock, corner.along);
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
     if (only_if_clear && !is_clear) return false;

@@ -96,13 +96,17 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
                                        : "G64 P0.02 or G61",
             states_dynamics(setup.machine) ? ""
                                            : ", or state `rapid` and `acceleration` of the axes");
+    if (!rapid && !pair.found() && setup.machine.has_rotary() && corners.turns.keeps_speed())
+        return "LinuxCNC may begin this motion before the one before it has ended: program G61 "
+               "where rotary axes turn; if that does not decide it, increase the clearance.";
     // A lower bound of 0 is cut off, so the width of the interval is only known to be at least
     // upper - lower. A pair that was only found near a corner has no upper bound.
     if (off > 0.0 && (!pair.found() || 4.0 * off >= pair.upper - pair.lower)) {
-        if (move.turns && corners.arcs.blends())
-            return "LinuxCNC may leave corners at which rotary axes turn by more than the "
-                   "tolerance of G64: program G61 for this block and the one before it; if that "
-                   "does not decide it, increase the clearance.";
+        if (setup.machine.has_rotary() && corners.arcs.blends())
+            return fmt::format("LinuxCNC may round corners by {:.4g} mm: use a smaller tolerance, "
+                               "or G61 where rotary axes turn; if that does not decide it, "
+                               "increase the clearance.",
+                               off);
         return fmt::format("The control may round corners by {:.4g} mm: use a smaller tolerance or "
                            "exact stops; if that does not decide it, increase the clearance.",
                            off);
