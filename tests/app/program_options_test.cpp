@@ -350,6 +350,28 @@ TEST(ToolChangePosition, OfTheIniFileIsWhereTheNextMoveStarts) {
         << "the motion of the tool change needs no length offset";
 }
 
+TEST(Machine, MayHaveAnAxisWBesidesXYAndZ) {
+    const ScopedFolder folder;
+    std::string setup = "[program]\ndialect = \"linuxcnc\"\n[offsets]\n"
+                        "G54 = { X = 0, Y = 0, Z = -200 }\n";
+    for (const char* axis : {"X", "Y", "Z"})
+        setup += "[[machine.axis]]\nname = \"" + std::string(axis) + "\"\nhome = 0\n";
+    const std::string fourth = "[[machine.axis]]\nname = \"W\"\ndirection = [0, 0, 1]\nhome = 0\n"
+                               "side = \"tool\"\nparent = \"Z\"\n";
+    const std::string rest = "[stock]\nbox = [[-60, -30, -60], [-20, 30, -30]]\n"
+                             "[[tool]]\nnumber = 1\nshape = \"flat\"\ndiameter = 10\n"
+                             "flute_length = 20\nstick_out = 60\nholder = [[40, 40, 40]]\n";
+    const auto printed = [&](const std::string& axis) {
+        const auto ran = feeler({"check",
+                                 folder.write("w.ngc", "G21 G90 G17 G54 G61\nT1 M6\nG43 H1\n"
+                                                       "G0 X0 Y0\nG0 Z10\nG0 W20\nM2\n"),
+                                 "--setup", folder.write("w.toml", setup + axis + rest)});
+        return ran.out + ran.err;
+    };
+    EXPECT_NE(printed("").find("moves axis W, which the machine"), std::string::npos);
+    EXPECT_EQ(printed(fourth).find("axis W"), std::string::npos) << printed(fourth);
+}
+
 TEST(IniFile, WithALongServoPeriodLeavesCornersUnknown) {
     const ScopedFolder folder;
     const auto says_so = [&](const std::string& period) {

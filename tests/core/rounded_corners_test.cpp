@@ -48,6 +48,12 @@ struct Corner {
             verdicts.push_back(pair.verdict);
         }
     }
+    void start_at(const AxisPosition& position) {
+        give({Motion{.kind = MotionKind::rapid, .from = position, .to = position}});
+    }
+    void feed(const AxisPosition& from, const AxisPosition& to, double rate = 6000.0) {
+        give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = rate}});
+    }
     Verdict go(MotionKind kind, const Vec3& to) {
         const double z = setup.tools.at(ToolNumber{1}).length;
         const Motion motion{.kind = kind,
@@ -197,12 +203,9 @@ TEST(RoundedCorners, AreOffOnlyAlongTheMotionThatMayNotHaveEnded) {
         corner.give({mode});
         const AxisPosition start = {-150, 0, z, 0}, upright = {50, 0, z, 0},
                            tilted = {50, 0, z, angle};
-        const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
-            corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0}});
-        };
-        corner.give({Motion{.kind = MotionKind::rapid, .from = start, .to = start}});
-        feed(start, upright);
-        feed(upright, tilted);
+        corner.start_at(start);
+        corner.feed(start, upright);
+        corner.feed(upright, tilted);
         return corner.verdicts.back();
     };
     EXPECT_EQ(verdict(30.0, 20.0), Verdict::clear);
@@ -278,14 +281,11 @@ TEST(RoundedCorners, AreThereAlsoWithAMotionOfRoundingErrorsBetween) {
     const double error = 0.1 + 0.2 - 0.3;
     const AxisPosition start = {-150, 0, z, 0}, there = {50, 0, z, 0}, again = {50, error, z, 0},
                        tilted = {50, 0, z, 20};
-    const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
-        corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0}});
-    };
-    corner.give({Motion{.kind = MotionKind::rapid, .from = start, .to = start}});
-    feed(start, there);
-    feed(there, again);
+    corner.start_at(start);
+    corner.feed(start, there);
+    corner.feed(there, again);
     EXPECT_EQ(corner.verdicts.back(), Verdict::clear);
-    feed(again, tilted);
+    corner.feed(again, tilted);
     EXPECT_EQ(corner.verdicts.back(), Verdict::undecided);
 }
 
@@ -298,12 +298,9 @@ TEST(RoundedCorners, OfTurningFeedsNeedNoTolerance) {
         mode.rapids_keep_speed = at_speed; // LinuxCNC's G64 without P
         corner.give({mode});
         const AxisPosition start = {-150, 0, z, 0}, there = {50, 0, z, 0}, tilted = {50, 0, z, 20};
-        const auto feed = [&](const AxisPosition& from, const AxisPosition& to) {
-            corner.give({Motion{.kind = MotionKind::feed, .from = from, .to = to, .feed = 6000.0}});
-        };
-        corner.give({Motion{.kind = MotionKind::rapid, .from = start, .to = start}});
-        feed(start, there);
-        feed(there, tilted);
+        corner.start_at(start);
+        corner.feed(start, there);
+        corner.feed(there, tilted);
         return corner.verdicts.back();
     };
     EXPECT_EQ(verdict(true), Verdict::undecided);

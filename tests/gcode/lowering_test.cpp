@@ -173,6 +173,7 @@ TEST(Lowering, RestsWhereLinuxcncWaitsForTheEndOfAMotion) {
     const auto rests = [](const std::string& mode, DialectId id = DialectId::linuxcnc) {
         Environment environment = example();
         environment.dialect = id;
+        environment.control.follows_start = true;
         size_t count = 0;
         for (const core::Event& event :
              events_of(mode + "\nG1 F500 X10\nM8\nX20\nS500 M3\nX30\nG43 H1\nX40\nG55\nX50\nM1\n",
@@ -181,6 +182,7 @@ TEST(Lowering, RestsWhereLinuxcncWaitsForTheEndOfAMotion) {
         return count;
     };
     EXPECT_EQ(rests("G64 P0.1"), 5U);
+    EXPECT_EQ(rests("G90"), 5U) << "as it starts";
     EXPECT_EQ(rests("G61"), 0U) << "it rests anyway";
     EXPECT_EQ(rests("G64", DialectId::fanuc), 0U);
 }

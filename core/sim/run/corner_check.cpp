@@ -72,24 +72,29 @@ bool BlockRun::flutes_may_cut(const Motion& motion) const {
     return tool() && turns_to_cut(state.spindle, *tool());
 }
 
+namespace {
+
+std::optional<MovingBody> flutes_of(const Setup& setup, const ToolAssembly& tool) {
+    for (const MovingBody& body : moving_bodies(setup, tool))
+        if (body.kind == PartKind::flutes) return body;
+    return std::nullopt;
+}
+
+} // namespace
+
 bool BlockRun::flutes_reach_stock(const std::vector<Leg>& legs) const {
-    for (const MovingBody& body : moving_bodies(setup, *tool()))
-        for (const Leg& leg : legs)
-            if (body.kind == PartKind::flutes
-                && distance(bounds(body, leg_against(setup, {}, body, leg)), state.stock.outer_box)
-                       <= 0.0)
-                return true;
-    return false;
+    const auto flutes = flutes_of(setup, *tool());
+    return flutes && std::any_of(legs.begin(), legs.end(), [&](const Leg& leg) {
+               const Aabb box = bounds(*flutes, leg_against(setup, {}, *flutes, leg));
+               return distance(box, state.stock.outer_box) <= 0.0;
+           });
 }
 
 double BlockRun::off_by_turn(const std::vector<Leg>& legs, double turn) const {
-    const std::vector<MovingBody> bodies = moving_bodies(setup, *tool());
-    const auto flutes = std::find_if(bodies.begin(), bodies.end(), [](const MovingBody& body) {
-        return body.kind == PartKind::flutes;
-    });
+    const auto flutes = flutes_of(setup, *tool());
     double off = 0.0;
     for (const Leg& leg : legs) {
-        if (flutes == bodies.end() || !leg.straight || leg.positions.size() != 2) continue;
+        if (!flutes || !leg.straight || leg.positions.size() != 2) continue;
         constexpr double most_turn = 0.2; // radians, of a piece
         const int pieces = 1 + static_cast<int>(turned_on({&leg, 1}) / most_turn);
         for (int i = 0; i < pieces; ++i) {
@@ -144,10 +149,6 @@ Leg off_path_by(Leg leg, const CornerBlend& blend) {
     leg.turn_error += blend.turn;
     return leg;
 }
-
-} // namespace
-
-namespace {
 
 /// Whether a motion hardly moves X, Y and Z while other axes move.
 bool mostly_turns(const std::vector<Leg>& legs) {

@@ -89,13 +89,14 @@ std::string cure_of_doubt(const Setup& setup, const PairClearance& pair, const B
     const double off =
         path_deviation(pair.pair, rapid ? corners.rapids.deviation : corners.by, corners);
     if (rapid && corners.rapids.keeps_speed())
-        return fmt::format(
-            "The control rounds corners between rapids as far as their speeds and "
-            "accelerations make it: program {}{}.",
-            setup.machine.has_rotary() ? "G61, or G64 P0.02 if no rotary axis turns before or after"
-                                       : "G64 P0.02 or G61",
-            states_dynamics(setup.machine) ? ""
-                                           : ", or state `rapid` and `acceleration` of the axes");
+        return fmt::format("The control rounds corners between rapids as far as their speeds and "
+                           "accelerations make it: program {}{}.",
+                           setup.machine.has_rotary()
+                               ? "G61, or G64 P0.02 if no rotary axis turns before or after"
+                               : "G64 P0.02 or G61",
+                           states_all_dynamics(setup.machine)
+                               ? ""
+                               : ", or state `rapid` and `acceleration` of the axes");
     if (!rapid && !pair.found() && setup.machine.has_rotary() && corners.turns.keeps_speed())
         return "LinuxCNC may begin this motion before the one before it has ended: program G61 "
                "where rotary axes turn; if that does not decide it, increase the clearance.";
