@@ -22,6 +22,10 @@ struct WorstMotion {
     bool only_dog_leg = false; // this rapid would be clear if it were straight
 };
 
+/// When the clearances found in a region count: in any case; if all bodies keep clear; if, besides,
+/// none comes nearer than it is known to do in this block.
+enum class RegionUse { always, if_clear, if_precise };
+
 /// A block during its execution.
 struct BlockRun {
     const Setup& setup;
@@ -188,11 +192,10 @@ struct BlockRun {
     double off_by_turn(const std::vector<Leg>& legs, double turn) const;
     /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the
     /// path `along` it, if that is stated. `may_cut`: the flutes may meet the stock.
-    /// `only_if_clear`: otherwise it changes nothing.
     ///
-    /// Result: whether all bodies keep clear on `anywhere`.
+    /// Result: whether the clearances found count, as `when` says. If not, nothing has changed.
     bool check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
-                      double deviation, bool may_cut, bool only_if_clear = false);
+                      double deviation, bool may_cut, RegionUse when = RegionUse::always);
     void check_from_unknown(const Motion& motion, const Path& path);
     /// Whether a motion with an unknown start is proven clear from every possible start.
     bool is_clear_from_anywhere(const Motion& motion);

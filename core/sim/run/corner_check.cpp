@@ -290,29 +290,42 @@ void BlockRun::check_beside_rest(const std::vector<Leg>& legs, bool may_cut) {
         const Leg* rest;
         double from, to;
     };
-    constexpr size_t most_parts = 200;
+    constexpr size_t most_parts = 200, most_parts_for_precision = 40;
     constexpr double fine_turn = 0.002, fine_way = 0.02; // radians, mm
+    constexpr double precise = 5.0;                      // times fine
     const std::vector<Leg>& rest = state.corners.last.rest;
     const AxisValues corner = rest.back().positions.back();
+    const auto size_of = [&](const Part& part) { // times fine
+        const std::span<const Leg> one(part.rest, 1);
+        return (part.to - part.from)
+               * std::max(turned_on(one) / fine_turn, length_of(one) / fine_way);
+    };
     std::vector<Part> parts;
     for (const Leg& leg : rest) parts.push_back({&leg, 0.0, 1.0});
+    // Where the rest ends, the bodies are as programmed: nearer than there they are only reported
+    // if fine parts show it.
+    if (std::any_of(parts.begin(), parts.end(),
+                    [&](const Part& part) { return size_of(part) > precise; }))
+        check_region(displaced(legs, rest.back(), 1.0, 1.0, corner), {}, 0.0, may_cut);
     for (size_t i = 0; i < parts.size(); ++i) {
-        const auto [leg, from, to] = parts[i];
-        const std::span<const Leg> one(leg, 1);
-        const bool may_split =
-            parts.size() < most_parts
-            && (to - from) * std::max(turned_on(one) / fine_turn, length_of(one) / fine_way) > 1.0;
-        const bool is_clear =
-            check_region(displaced(legs, *leg, from, to, corner), {}, 0.0, may_cut, may_split);
-        if (is_clear || !may_split) continue;
-        const double middle = 0.5 * (from + to);
-        parts.push_back({leg, from, middle});
-        parts.push_back({leg, middle, to});
+        const Part part = parts[i];
+        const double size = size_of(part);
+        const bool may_split = parts.size() < most_parts && size > 1.0;
+        const RegionUse use = !may_split ? RegionUse::always
+                              : parts.size() < most_parts_for_precision && size > precise
+                                  ? RegionUse::if_precise
+                                  : RegionUse::if_clear;
+        const bool is_used = check_region(displaced(legs, *part.rest, part.from, part.to, corner),
+                                          {}, 0.0, may_cut, use);
+        if (is_used) continue;
+        const double middle = 0.5 * (part.from + part.to);
+        parts.push_back({part.rest, part.from, middle});
+        parts.push_back({part.rest, middle, part.to});
     }
 }
 
 bool BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<Leg>& along,
-                            double deviation, bool may_cut, bool only_if_clear) {
+                            double deviation, bool may_cut, RegionUse when) {
     note_axis_tolerances({.legs = anywhere});
     CheckMemory memory; // the bounds of the run only hold along its own path
     memory.hints = state.memory.hints;
@@ -331,7 +344,15 @@ bool BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<
         if (!is_clear) leg_check(use, memory).run(leg, result.duration, state.stock, corner.along);
     std::swap(memory.cuts, state.memory.cuts);
     std::swap(memory.passages, state.memory.passages);
-    if (only_if_clear && !is_clear) return false;
+    if (when != RegionUse::always && !is_clear) return false;
+    if (when == RegionUse::if_precise
+        && !std::all_of(corner.anywhere.begin(), corner.anywhere.end(),
+                        [&](const TrackedPair& pair) {
+                            constexpr double slack = 0.05; // mm
+                            const TrackedPair* known = pairs.find(pair.pair);
+                            return known && pair.lower >= known->lower - slack;
+                        }))
+        return false;
     for (const TrackedPair& pair : corner.anywhere) {
         auto now = corner.clearance(pair, !along.empty());
         if (!now) continue;
@@ -340,7 +361,7 @@ bool BlockRun::check_region(const std::vector<Leg>& anywhere, const std::vector<
                   PairBounds(setup, state.memory).tracked_pair(pairs, now->pair)),
               *now);
     }
-    return is_clear;
+    return true;
 }
 
 } // namespace core
