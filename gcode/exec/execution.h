@@ -97,6 +97,10 @@ inline constexpr std::string_view no_feed_yet = "no feed rate: no F has been pro
 ///         with an unknown path length under G93; invalid_value for F0.
 core::Result<double> feed_rate(const Execution& execution, std::optional<double> path_length);
 
+/// The rate of a straight feed from the present position to `end`: `rate` is that of F. Where only
+/// rotary axes move, F per minute is in degrees, also if it was programmed in inches.
+double rate_to(const ModalState& modal, const Position& end, double rate);
+
 /// Changes the offsets without moving the machine; the program coordinates change instead.
 void change_offsets(Execution& execution, const Offsets& offsets);
 

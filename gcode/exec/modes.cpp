@@ -47,6 +47,7 @@ core::Result<void> set_feed(Execution& execution) {
     if (units && !execution.dialect.feed_before_units)
         unit = units->code->number == g_code(20) ? LengthUnit::inch : LengthUnit::mm;
     modal.feed = modal.feed_mode == FeedMode::inverse_time ? word->value : to_mm(word->value, unit);
+    modal.feed_unit = unit;
     return {};
 }
 
@@ -433,7 +434,9 @@ void announce_modes(BlockCommands& result, uint32_t column, const ModalState& be
 
 void restore_modes(InterpreterState& state, const ModalState& saved) {
     ModalState& modal = state.modal;
-    modal.feed = restored_feed(modal, saved);
+    const std::optional<double> feed = restored_feed(modal, saved);
+    if (feed != modal.feed) modal.feed_unit = saved.unit;
+    modal.feed = feed;
     modal.feed_mode = saved.feed_mode;
     modal.speed = restored_speed(modal, saved);
     if (modal.surface_speed != saved.surface_speed) modal.fastest_speed = 0.0;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "gcode/contour/contour.h"
+#include "gcode/exec/execution.h"
 #include "gcode/exec/following.h"
 #include "gcode/exec/probing.h"
 #include "gcode/language/codes.h"
@@ -29,6 +30,7 @@ constexpr double largest_quick_value = 1e7;
 struct Move {
     MotionCode motion = rapid;
     std::optional<double> feed{}; // mm/min
+    LengthUnit feed_unit{};
     Position end{};
     bool has_code = false, has_axis = false;
 
@@ -36,6 +38,7 @@ struct Move {
         if (word.letter == 'N') return true;
         if (word.letter == 'F') {
             feed = to_mm(word.value, modal.unit);
+            feed_unit = modal.unit;
             return true;
         }
         if (word.letter == 'G') {
@@ -77,21 +80,25 @@ bool moves_quickly(const InterpreterState& state) {
 
 bool run_quick_move(const Block& block, InterpreterState& state, BlockCommands& result) {
     ModalState& modal = state.modal;
-    Move move{.motion = *modal.motion, .feed = modal.feed, .end = modal.position};
+    Move move{.motion = *modal.motion,
+              .feed = modal.feed,
+              .feed_unit = modal.feed_unit,
+              .end = modal.position};
     for (const Word& word : block.words)
         if (!move.take(word, modal)) return false;
     const bool lacks_feed = move.motion == straight && !(move.feed && *move.feed > 0.0);
     if (!move.has_axis || lacks_feed || (move.feed && *move.feed < 0.0)) return false;
     modal.motion = move.motion;
     modal.feed = move.feed;
+    modal.feed_unit = move.feed_unit;
+    if (move.motion == rapid)
+        result.commands.emplace_back(StraightTraverse{move.end});
+    else
+        result.commands.emplace_back(StraightFeed{move.end, rate_to(modal, move.end, *move.feed)});
     modal.position = move.end;
     modal.leaves_contour = false;
     state.rules.has_moved = true;
     if (modal.doubt) result.path = core::PathCertainty::doubtful;
-    if (move.motion == rapid)
-        result.commands.emplace_back(StraightTraverse{move.end});
-    else
-        result.commands.emplace_back(StraightFeed{move.end, *move.feed});
     result.columns.push_back(1);
     return true;
 }

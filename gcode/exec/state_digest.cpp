@@ -138,6 +138,7 @@ void add(Digest& digest, const ModalState& modal) {
     add_all(digest, modal.offset_travel);
     add_all(digest, modal.length_travel);
     digest.add(modal.feed);
+    digest.add(number_of(int(modal.feed_unit)));
     digest.add(uint64_t{modal.cycle.has_value()});
     if (modal.cycle) add(digest, *modal.cycle);
     add_id(digest, modal.selected_tool);

@@ -261,4 +261,15 @@ core::Result<double> feed_rate(const Execution& execution, std::optional<double>
     return *modal.feed * turns_a_minute(modal);
 }
 
+double rate_to(const ModalState& modal, const Position& end, double rate) {
+    if (modal.feed_mode != FeedMode::per_minute || modal.feed_unit == LengthUnit::mm) return rate;
+    bool turns = false;
+    for (size_t axis = 0; axis < axis_count; ++axis) {
+        if (modal.position[axis] == end[axis]) continue;
+        if (!is_rotary(axis)) return rate;
+        turns = true;
+    }
+    return turns ? from_mm(rate, modal.feed_unit) : rate;
+}
+
 } // namespace gcode

@@ -44,7 +44,7 @@ core::Result<void> move_straight(Execution& execution, bool rapid) {
     const std::optional<double> way =
         needs_way ? distance_between(execution.modal().position, end) : std::nullopt;
     FEELER_TRY(const double rate, feed_rate(execution, way));
-    execution.feed(end, rate);
+    execution.feed(end, rate_to(execution.modal(), end, rate));
     return {};
 }
 

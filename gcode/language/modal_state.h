@@ -302,8 +302,9 @@ struct ModalState {
     Position suspended_axis = zero_position; // saved by G92.2 for G92.3
     bool axis_offset_on = false;             // G92 or G52 is active, even if zero
 
-    std::optional<double> feed; // mm/min, mm/rev or 1/min, depending on feed_mode
-    double speed = 0.0;         // rev/min, or m/min under G96
+    std::optional<double> feed;            // mm/min, mm/rev or 1/min, depending on feed_mode
+    LengthUnit feed_unit = LengthUnit::mm; // in which it was programmed
+    double speed = 0.0;                    // rev/min, or m/min under G96
     core::SpindleDirection spindle = core::SpindleDirection::stopped;
     bool mist = false, flood = false;
 

@@ -102,6 +102,7 @@ core::Result<void> set_siemens_feed(Execution& execution) {
     const LengthUnit unit =
         siemens_of(execution.state).feeds_in_inches ? LengthUnit::inch : LengthUnit::mm;
     modal.feed = modal.feed_mode == FeedMode::inverse_time ? word->value : to_mm(word->value, unit);
+    modal.feed_unit = unit;
     return {};
 }
 

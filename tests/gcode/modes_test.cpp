@@ -15,6 +15,16 @@ TEST(Units, InchesBecomeMillimetresOnce) {
               "straight_feed x=1 y=-12.7 z=2.54 feed=10\n");
 }
 
+TEST(Units, OfTheFeedOfRotaryAxesAreDegrees) {
+    EXPECT_EQ(trace("G20\nG1 A90 F600\nX1 A0\nA90\nG21 A0\nF600 A90\nG20\nA0", DialectId::linuxcnc),
+              "straight_feed x=0 y=0 z=0 a=90 feed=600\n"
+              "straight_feed x=25.4 y=0 z=0 feed=15240\n"
+              "straight_feed x=25.4 y=0 z=0 a=90 feed=600\n"
+              "straight_feed x=25.4 y=0 z=0 feed=600\n"
+              "straight_feed x=25.4 y=0 z=0 a=90 feed=600\n"
+              "straight_feed x=25.4 y=0 z=0 feed=600\n");
+}
+
 TEST(Units, FeedAndUnitsInOneBlockGoByTheDialect) {
     EXPECT_EQ(trace("G20\nG21 G1 X1 F10", DialectId::fanuc), "straight_feed x=1 y=0 z=0 feed=10\n");
     // RS274/NGC: F takes effect before the units change.
