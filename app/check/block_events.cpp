@@ -1,9 +1,12 @@
 #include "app/check/block_events.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
-#include <string>
 
+#include <fmt/format.h>
+
+#include "core/base/rule_table.h"
 #include "core/sim/setup.h"
 #include "gcode/exec/following.h"
 #include "gcode/lower/lowering.h"
@@ -85,11 +88,25 @@ std::optional<size_t> displaced_axis(std::span<const core::Event> events) {
     return std::nullopt;
 }
 
-std::optional<std::vector<core::Event>>
-first_events(const std::function<void(const BlockVisit&)>& show) {
-    std::optional<std::vector<core::Event>> found;
-    show([&](const gcode::BlockCommands&, std::span<const core::Event> events) {
-        found.emplace(events.begin(), events.end());
+std::string doubt_about(const gcode::BlockCommands& block, std::span<const core::Event> events,
+                        bool has_axes) {
+    if (const auto axis = has_axes ? std::nullopt : displaced_axis(events))
+        return fmt::format("axis {} is not described", core::axis_letters[*axis]);
+    if (block.path == core::PathCertainty::doubtful) return "where the block leads is in doubt";
+    if (block.path != core::PathCertainty::known) return "where the machine is, is not known";
+    const auto is_doubt = [](const gcode::Warning& warning) {
+        return warning.rule == core::rule_id("undecided");
+    };
+    return std::any_of(block.warnings.begin(), block.warnings.end(), is_doubt)
+               ? "what the control makes of the block is not known"
+               : "";
+}
+
+std::optional<NextBlock> first_block(const std::function<void(const BlockVisit&)>& show,
+                                     bool has_axes) {
+    std::optional<NextBlock> found;
+    show([&](const gcode::BlockCommands& block, std::span<const core::Event> events) {
+        found = {{events.begin(), events.end()}, doubt_about(block, events, has_axes)};
         return false;
     });
     return found;

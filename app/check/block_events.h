@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,13 +39,25 @@ std::optional<size_t> displaced_axis(std::span<const core::Event> events);
 /// Receives a block and its events. Returns false to see no more blocks.
 using BlockVisit = std::function<bool(const gcode::BlockCommands&, std::span<const core::Event>)>;
 
-/// The events of the first block that `show` passes to its visitor; empty if there is none.
-std::optional<std::vector<core::Event>>
-first_events(const std::function<void(const BlockVisit&)>& show);
+/// Why nothing can be proven about a block, whatever its events are; empty if something can.
+/// `has_axes`: the set-up describes the axes of the machine.
+std::string doubt_about(const gcode::BlockCommands& block, std::span<const core::Event> events,
+                        bool has_axes);
 
-/// Judges the events of a block in place of the distance core, with the state before them.
-using BlockJudge = std::function<core::Result<core::Judgement>(std::span<const core::Event>,
-                                                               const core::SimulatorState&)>;
+/// A block that has not run yet.
+struct NextBlock {
+    std::vector<core::Event> events;
+    std::string doubt; // see doubt_about()
+};
+
+/// The first block that `show` passes to its visitor; empty if there is none.
+std::optional<NextBlock> first_block(const std::function<void(const BlockVisit&)>& show,
+                                     bool has_axes);
+
+/// Judges a block in place of the distance core: its events, with the state before them, and the
+/// doubt about it.
+using BlockJudge = std::function<core::Result<core::Judgement>(
+    std::span<const core::Event>, const core::SimulatorState&, const std::string&)>;
 
 /// Whether a block has this M code outside comments.
 bool has_m_code(std::string_view block, int code);

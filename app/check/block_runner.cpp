@@ -216,7 +216,9 @@ core::Result<std::optional<BlockStep>> BlockRunner::run_next(RunState& state) {
     if (!ahead) own_events = events_of(*setup_, block, lowering, check_.file.speed_by_hand);
     const std::vector<core::Event>& events = ahead ? ahead->events : own_events;
     if (auto refused = refusal(block, lowering)) return failed(*std::move(refused));
-    auto judged = judge ? judge(events, state.machine) : core::Judgement();
+    auto judged =
+        judge ? judge(events, state.machine, doubt_about(block, events, check_.file.has_axes))
+              : core::Judgement();
     if (!judged)
         return failed({judged.error().code,
                        {.line = block.line, .column = 1},

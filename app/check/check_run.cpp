@@ -170,9 +170,10 @@ core::Result<CheckRun> run_check(const CheckJob& job) {
     std::optional<DeviceJudge> device;
     if (job.engine == Engine::coprocessor) {
         FEELER_TRY(device, DeviceJudge::with(check.run.setup, runner.machine().stock));
-        runner.use_judge([&](std::span<const core::Event> block, const auto& before) {
-            return device->judge(block, before);
-        });
+        runner.use_judge(
+            [&](std::span<const core::Event> block, const auto& before, const std::string& doubt) {
+                return device->judge(block, before, doubt);
+            });
     }
     if (!job.start_line.empty())
         if (const auto begun = runner.start_at(job.start_line); !begun)

@@ -206,10 +206,12 @@ RunState& ProgramRunner::mutable_state() {
 
 const core::SimulatorState& ProgramRunner::machine() const { return state_->machine; }
 
-std::optional<std::vector<core::Event>> ProgramRunner::next_events() {
-    return first_events([this](const BlockVisit& visit) {
-        runner_->visit_ahead(state_->control, state_->lowering, visit);
-    });
+std::optional<NextBlock> ProgramRunner::next_block() {
+    return first_block(
+        [this](const BlockVisit& visit) {
+            runner_->visit_ahead(state_->control, state_->lowering, visit);
+        },
+        check_.file.has_axes);
 }
 
 void ProgramRunner::use(const core::Setup& setup) { runner_->use(setup); }

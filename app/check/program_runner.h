@@ -75,8 +75,8 @@ public:
     /// The part of the simulator in the state.
     const core::SimulatorState& machine() const;
     CheckProgress progress() const;
-    /// The events of the next block, without running it; empty if there is none.
-    std::optional<std::vector<core::Event>> next_events();
+    /// The next block, without running it; empty if there is none.
+    std::optional<NextBlock> next_block();
 
     /// Uses another set-up from the next block on. It must outlive the runner.
     void use(const core::Setup& setup);

@@ -28,8 +28,11 @@ struct BlockPermit {
     std::optional<core::Pair> pair; // the refused pair
     std::string not_queried;        // why a motion could not be checked; it is then not permitted
     bool is_reported = false;       // a finding of the run gives the same reason
+    std::string doubt; // why nothing is proven, as the run reports; it is then not permitted
     std::vector<QueriedPair> pairs; // every pair once
     hwsim::DeviceReport report;     // of the device, before a stop is cleared
+
+    bool is_checked() const { return not_queried.empty() && doubt.empty(); }
 };
 
 /// A block whose questions are in the device.

@@ -160,7 +160,7 @@ BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
     if (report.stop != hwsim::Stop::none) note_stop(block, report, setup);
     BlockPermit& permit = block.permit;
     if (permit.stop == hwsim::Stop::none) permit.report = report;
-    permit.permitted = permit.not_queried.empty() && permit.stop == hwsim::Stop::none;
+    permit.permitted = permit.is_checked() && permit.stop == hwsim::Stop::none;
     return std::move(permit);
 }
 
@@ -173,8 +173,9 @@ Result<CoprocessorCheck> CoprocessorCheck::with(hwsim::DevicePort port, const co
 }
 
 Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
-                                           const core::SimulatorState& before) {
-    PushedBlock pushed{.first = driver_.next_sequence};
+                                           const core::SimulatorState& before,
+                                           const std::string& doubt) {
+    PushedBlock pushed{.permit = {.doubt = doubt}, .first = driver_.next_sequence};
     if (auto updated = hwsim::update_stock(driver_, stock_, before.stock); !updated)
         return tl::unexpected(std::move(updated).error());
     At at{.stock = before.stock,
@@ -190,6 +191,7 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
                   > 1;
     hold(before.tool, at);
     at.tool_known = before.tool_known;
+    at.start_is_assumed = before.is_assumed != std::array<bool, 3>{};
     for (size_t i = 0; i < core::axis_count; ++i)
         if (before.spread.below[i] != 0.0 || before.spread.above[i] != 0.0)
             at.uncertain |= static_cast<core::AxisSet>(1U << i);
@@ -200,8 +202,9 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
 }
 
 Result<BlockPermit> CoprocessorCheck::ask(std::span<const core::Event> block,
-                                          const core::SimulatorState& before) {
-    FEELER_TRY(PushedBlock pushed, push(block, before));
+                                          const core::SimulatorState& before,
+                                          const std::string& doubt) {
+    FEELER_TRY(PushedBlock pushed, push(block, before, doubt));
     const hwsim::DeviceReport now = hwsim::wait_for_all(driver_);
     if (now.stop != hwsim::Stop::none) hwsim::recover(driver_);
     return answered(std::move(pushed), now, *setup_);
@@ -268,22 +271,27 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
         return {};
     }
     const bool rapid = motion.kind == core::MotionKind::rapid;
-    // A permit is needed before the next motion is known, so whole rapids count as rounded.
-    // Where they keep their speed, the device would refuse most of them: that is left out.
-    const double between_rapids =
-        at.corners.rapids.keeps_speed() ? 0.0 : at.corners.rapids.deviation;
-    at.off_motion = rapid ? std::max(between_rapids, at.corners.mixed.deviation)
+    // A permit is needed before the next motion is known, so whole rapids count as rounded by a
+    // tolerance. Where they keep their speed, the corner is asked about with the second one.
+    const auto of_rapids = [](const core::CornerLimit& limit) {
+        return limit.keeps_speed() ? 0.0 : limit.deviation;
+    };
+    at.off_motion = rapid ? std::max(of_rapids(at.corners.rapids), of_rapids(at.corners.mixed))
                           : at.corners.of_feed(motion.arc.has_value());
     // A spindle of unknown content counts as empty until the program feeds.
     if (!at.tool && !(!at.called && (at.tool_known || rapid))) {
         deny(block.permit, "the tool is unknown", Teller::run);
         return {};
     }
-    if (!at.tool && setup_->machine.bodies.empty()) return {};
+    const bool may_hold_any = !at.tool && !at.called && !at.tool_known && !at.start_is_assumed;
+    if (!at.tool && !may_hold_any && setup_->machine.bodies.empty()) return {};
     if (path.legs.empty() || !path.legs[0].start_known) {
+        if (!at.tool && setup_->machine.bodies.empty()) return {};
         deny(block.permit, "the start position of the motion is unknown", Teller::run);
         return {};
     }
+    if (may_hold_any)
+        if (auto asked = query_each_tool(path.legs, at, block); !asked) return asked;
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
     const double off_by_axes = core::axis_tolerance_error(*setup_, at.tool, path);
@@ -292,15 +300,28 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
         at.corners.by_axes_of_cuts = std::max(at.corners.by_axes_of_cuts, off_by_axes);
         at.corners.has_cut = true;
     }
+    const core::CornerPlan corner =
+        plan_corner({.setup = *setup_,
+                     .tool = at.tool,
+                     .motion = motion,
+                     .path = path,
+                     .cuts = cutting,
+                     .may_cut = cutting || (rapid && at.tool && turns_to_cut(at.spindle, *at.tool)),
+                     .off_path = rapid ? 0.0 : at.off_motion,
+                     .stock = at.stock.outer_box},
+                    at.corners);
+    const bool between_feeds = !rapid && at.corners.last.kind != core::MotionKind::rapid;
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     // A rapid that rises leaves its cut sideways at a rounded corner before it.
     const bool is_rounded =
         rapid && at.off_motion > 0.0 && at.corners.last.kind == core::MotionKind::rapid;
     at.off_motion += off_by_axes;
+    if (auto asked = query_corner(corner, between_feeds, at, block); !asked) return asked;
+    at.corners.of_cuts = std::max(at.corners.of_cuts, corner.of_cuts);
     at.follows =
         off_by_axes + at.corners.by_axes_of_cuts == 0.0
         && follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
-    at.corners.end(motion.kind, motion.arc.has_value());
+    note_corner(at.corners, motion, path);
     for (const core::Leg& leg : path.legs) {
         if (auto done = update_models(at); !done) return done;
         if (pushes_centre(leg, cutting, at))
@@ -308,6 +329,94 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
                  Teller::run);
         if (auto walked = walk(leg, cutting, at, block); !walked) return walked;
     }
+    return {};
+}
+
+Result<void> CoprocessorCheck::query_each_tool(const std::vector<core::Leg>& legs, At& at,
+                                               PushedBlock& block) {
+    at.follows = false;
+    for (const auto& [number, held] : setup_->tools) {
+        if (held.reach_is_assumed) continue;
+        at.tool = &held;
+        for (const core::Leg& leg : legs)
+            if (auto walked = walk(leg, false, at, block); !walked) return walked;
+    }
+    at.tool = nullptr;
+    return {};
+}
+
+namespace {
+
+/// Straight legs near which the bodies stay at a corner between two straight legs, wherever they
+/// are in the triangle of the corner and the ends of these.
+std::vector<core::Leg> strips_of(const core::Leg& before, const core::Leg& after) {
+    constexpr double wanted = 1.0; // mm
+    constexpr int most = 24;
+    const double longest = std::max(core::length_of({&before, 1}), core::length_of({&after, 1}));
+    const int count = std::clamp(static_cast<int>(longest / (2.0 * wanted)) + 1, 1, most);
+    std::vector<core::Leg> strips;
+    for (int i = 0; i < count; ++i) {
+        const double to_corner = (i + 0.5) / count;
+        core::Leg strip = after;
+        strip.positions = {stretch(before, to_corner, 1.0).positions.front(),
+                           stretch(after, 0.0, 1.0 - to_corner).positions.back()};
+        const double off = longest / (2.0 * count);
+        strip.path_error = std::max(before.path_error, after.path_error) + off;
+        strip.lasting_error = std::max(before.lasting_error, after.lasting_error) + off;
+        strips.push_back(std::move(strip));
+    }
+    return strips;
+}
+
+bool is_plain(const core::Leg& leg) {
+    return leg.straight && leg.positions.size() == 2 && leg.arc.motion == nullptr;
+}
+
+/// The legs beside all parts of the rest of a motion, in parts small enough.
+std::vector<core::Leg> beside_rest(const std::vector<core::Leg>& rest,
+                                   const std::vector<core::Leg>& legs) {
+    constexpr size_t most_parts = 24;
+    constexpr double small = 25.0; // size of a part
+    std::vector<core::RestPart> parts;
+    for (const core::Leg& leg : rest) parts.push_back({.rest = &leg});
+    std::vector<core::Leg> all;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const core::RestPart part = parts[i];
+        if (part.size() > small && parts.size() < most_parts) {
+            for (const core::RestPart& half : part.halves()) parts.push_back(half);
+            continue;
+        }
+        for (core::Leg& leg : part.beside(legs, rest.back().positions.back()))
+            all.push_back(std::move(leg));
+    }
+    return all;
+}
+
+} // namespace
+
+Result<void> CoprocessorCheck::query_corner(const core::CornerPlan& plan, bool between_feeds,
+                                            At& at, PushedBlock& block) {
+    if (plan.kind == core::CornerPlan::Kind::nothing) return {};
+    const bool is_region = plan.kind == core::CornerPlan::Kind::region;
+    const std::vector<core::Leg>& along = plan.along;
+    const bool has_strips = is_region && !between_feeds && along.size() == 2
+                            && std::all_of(along.begin(), along.end(), is_plain);
+    const bool is_on_path = is_region && !along.empty() && !has_strips;
+    const std::vector<core::Leg> legs = has_strips   ? strips_of(along[0], along[1])
+                                        : is_on_path ? along
+                                        : is_region
+                                            ? plan.anywhere
+                                            : beside_rest(at.corners.last.rest, plan.anywhere);
+    if (auto done = update_models(at); !done) return done;
+    const double off_motion =
+        std::exchange(at.off_motion, core::axis_tolerance_error(*setup_, at.tool, {.legs = legs})
+                                         + (is_on_path ? plan.deviation : 0.0));
+    at.follows = false;
+    at.at_corner = true;
+    for (const core::Leg& leg : legs)
+        if (auto walked = walk(leg, plan.may_cut, at, block); !walked) return walked;
+    at.at_corner = false;
+    at.off_motion = off_motion;
     return {};
 }
 
@@ -332,7 +441,7 @@ Result<void> CoprocessorCheck::walk(const core::Leg& leg, bool cutting, At& at, 
         return {};
     }
     if (auto asked = query_leg(leg, cutting, at, block); !asked) return asked;
-    if (cutting) note_cut(leg, at);
+    if (cutting && !at.at_corner) note_cut(leg, at);
     return {};
 }
 

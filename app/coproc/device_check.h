@@ -5,6 +5,7 @@
 #include "app/coproc/device_answer.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/moving_body.h"
+#include "core/sim/run/corner_plan.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 #include "hwsim/body_cover.h"
@@ -79,15 +80,16 @@ public:
                                                const core::CutModel& stock,
                                                QueryScope asking = QueryScope::until_refused);
 
-    /// Asks about a block and waits for the answers.
+    /// Asks about a block and waits for the answers. `doubt`: why nothing can be proven about it,
+    /// or empty.
     ///
     /// Errors: models that do not fit into the device.
     core::Result<BlockPermit> ask(std::span<const core::Event> block,
-                                  const core::SimulatorState& before);
+                                  const core::SimulatorState& before, const std::string& doubt);
 
     /// As ask, without waiting: the device continues with earlier blocks.
     core::Result<PushedBlock> push(std::span<const core::Event> block,
-                                   const core::SimulatorState& before);
+                                   const core::SimulatorState& before, const std::string& doubt);
     /// The current report of the device.
     hwsim::DeviceReport report() { return hwsim::report(driver_); }
 
@@ -111,8 +113,10 @@ private:
         core::CentreTracker centre;             // for a tool that does not cut at its centre
         std::optional<core::ToolNumber> called; // tool in the spindle, described or not
         bool tool_known = false;
-        bool is_cycle = false; // the block has several motions
-        bool follows = true;   // the motion follows the tool's own cut or leaves it upwards
+        bool start_is_assumed = false; // where the machine starts is not stated
+        bool is_cycle = false;         // the block has several motions
+        bool follows = true;           // the motion follows the tool's own cut or leaves it upwards
+        bool at_corner = false;        // of a motion, where nothing is cut yet
     };
     /// A body on the tool side over a leg, and its minimum clearance.
     struct Question {
@@ -129,6 +133,12 @@ private:
 
     core::Result<void> query_event(const core::Event& event, At& at, PushedBlock& block);
     core::Result<void> query_motion(const core::Motion& motion, At& at, PushedBlock& block);
+    /// Asks about the corner where a motion begins, if the control may round it.
+    core::Result<void> query_corner(const core::CornerPlan& plan, bool between_feeds, At& at,
+                                    PushedBlock& block);
+    /// Asks with each tool that may be in the spindle, which counts as empty, along legs.
+    core::Result<void> query_each_tool(const std::vector<core::Leg>& legs, At& at,
+                                       PushedBlock& block);
     core::Result<void> query_standstill(At& at, PushedBlock& block);
     void hold(const std::optional<core::ToolNumber>& tool, At& at) const;
     bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;

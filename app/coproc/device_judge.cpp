@@ -104,8 +104,9 @@ core::Result<DeviceJudge> DeviceJudge::with(const core::Setup& setup, const core
 }
 
 core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> block,
-                                                 const core::SimulatorState& before) {
-    FEELER_TRY(const BlockPermit permit, state_->check->ask(block, before));
+                                                 const core::SimulatorState& before,
+                                                 const std::string& doubt) {
+    FEELER_TRY(const BlockPermit permit, state_->check->ask(block, before, doubt));
     core::Judgement judgement;
     for (const QueriedPair& asked : permit.pairs) {
         judgement.pairs.push_back(clearance_of(asked, state_->setup.search_limit));
@@ -116,7 +117,8 @@ core::Result<core::Judgement> DeviceJudge::judge(std::span<const core::Event> bl
     if (permit.permitted) return judgement;
     judgement.verdict = Verdict::undecided;
     judgement.checked = permit.not_queried.empty() || worst_of(permit);
-    if (!permit.is_reported || permit.stop != hwsim::Stop::none)
+    const bool is_only_doubted = permit.not_queried.empty() && permit.stop == hwsim::Stop::none;
+    if (!is_only_doubted && (!permit.is_reported || permit.stop != hwsim::Stop::none))
         judgement.finding = refusal(state_->setup, permit);
     return judgement;
 }
@@ -141,6 +143,7 @@ struct DevicePipeline::State {
     struct Pending {
         std::vector<core::Event> events;
         core::SimulatorState before;
+        std::string doubt;
         bool is_pushed = false;
         uint64_t begin = 0; // cycle of its first word
         PushedBlock pushed = {};
@@ -158,7 +161,8 @@ struct DevicePipeline::State {
     State(hwsim::EmulatedDevice device, const core::Setup& setup)
         : device_(std::move(device)), setup_(&setup) {}
 
-    core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before);
+    core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before,
+                            const std::string& doubt);
     core::Result<void> finish();
     DeviceTotals totals();
 
@@ -208,8 +212,8 @@ Result<std::unique_ptr<DevicePipeline>> DevicePipeline::with(
 }
 
 Result<void> DevicePipeline::push(std::span<const core::Event> block,
-                                  const core::SimulatorState& before) {
-    return state_->push(block, before);
+                                  const core::SimulatorState& before, const std::string& doubt) {
+    return state_->push(block, before, doubt);
 }
 
 Result<void> DevicePipeline::finish() { return state_->finish(); }
@@ -229,8 +233,9 @@ void DevicePipeline::State::note(const hwsim::CoprocessorState& state) {
 }
 
 Result<void> DevicePipeline::State::push(std::span<const core::Event> block,
-                                         const core::SimulatorState& before) {
-    pending_.push_back({.events = {block.begin(), block.end()}, .before = before});
+                                         const core::SimulatorState& before,
+                                         const std::string& doubt) {
+    pending_.push_back({.events = {block.begin(), block.end()}, .before = before, .doubt = doubt});
     return settle();
 }
 
@@ -262,7 +267,7 @@ Result<void> DevicePipeline::State::settle() {
 Result<void> DevicePipeline::State::ask(Pending& pending) {
     pending.begin = pending.end = device_.state.cycle;
     const uint64_t before = check_->lines_made();
-    FEELER_TRY(pending.pushed, check_->push(pending.events, pending.before));
+    FEELER_TRY(pending.pushed, check_->push(pending.events, pending.before, pending.doubt));
     pending.block.lines = check_->lines_made() - before;
     pending.is_pushed = true;
     return {};
@@ -353,9 +358,10 @@ void add(EngineAgreement& agreement, const BlockPermit& permit, const core::Bloc
     ++agreement.blocks;
     agreement.violations += violates;
     agreement.refused += !permit.permitted;
-    agreement.not_queried += !permit.not_queried.empty();
+    agreement.not_queried += !permit.is_checked();
     agreement.missed += violates && permit.permitted;
-    if (violates || permit.permitted || !permit.not_queried.empty()) return;
+    agreement.unproven += permit.permitted && exact.verdict == Verdict::undecided;
+    if (violates || permit.permitted || !permit.is_checked()) return;
     agreement.undecided += exact.verdict == core::Verdict::undecided;
     agreement.false_alarms += exact.verdict == core::Verdict::clear;
 }

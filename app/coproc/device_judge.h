@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/result.h"
@@ -42,11 +43,13 @@ public:
     ~DeviceJudge();
 
     /// The device's answer for a block: each pair asked about, with a lower bound of the clearance,
-    /// and a finding `refused` if the block is not fully permitted.
+    /// and a finding `refused` if the block is not fully permitted. `doubt`: why nothing can be
+    /// proven about it, or empty.
     ///
     /// Errors: models that do not fit into the device.
     core::Result<core::Judgement> judge(std::span<const core::Event> block,
-                                        const core::SimulatorState& before);
+                                        const core::SimulatorState& before,
+                                        const std::string& doubt);
 
 private:
     struct State;
@@ -72,10 +75,12 @@ public:
 
     ~DevicePipeline();
 
-    /// Asks about the next block as soon as there is room for it.
+    /// Asks about the next block as soon as there is room for it. `doubt`: why nothing can be
+    /// proven about it, or empty.
     ///
     /// Errors: models that do not fit into the device.
-    core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before);
+    core::Result<void> push(std::span<const core::Event> block, const core::SimulatorState& before,
+                            const std::string& doubt);
 
     /// Waits until all blocks are answered.
     ///
@@ -100,6 +105,7 @@ struct EngineAgreement {
     size_t refused = 0;      // by the device
     size_t not_queried = 0;  // of these, blocks that the device cannot check
     size_t missed = 0;       // violations that the device permitted
+    size_t unproven = 0;     // permitted, and undecided by the exact engine
     size_t undecided = 0;    // refused, and undecided by the exact engine
     size_t false_alarms = 0; // refused, and clear by the exact engine
 

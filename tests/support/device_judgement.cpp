@@ -16,15 +16,16 @@ core::Result<JudgedProgram> judged_by_device(const app::CheckJob& job, hwsim::De
     JudgedProgram judged;
     app::ProgramRunner runner(check);
     while (true) {
-        const auto events = runner.next_events();
+        const auto block = runner.next_block();
         app::BlockPermit permit;
-        if (events) {
-            FEELER_TRY(permit, coprocessor.ask(*events, runner.machine()));
+        if (block) {
+            FEELER_TRY(permit, coprocessor.ask(block->events, runner.machine(), block->doubt));
         }
         if (!runner.advance()) break;
         judged.permits.push_back(std::move(permit));
     }
     judged.blocks = std::move(check.run.blocks);
+    judged.findings = std::move(check.run.findings);
     return judged;
 }
 
@@ -40,7 +41,13 @@ void judge_by_device(const app::CheckJob& job, hwsim::DevicePort port, DeviceJud
         add(judgement.counts, judged->permits[i], block.result);
         if (judgement.counts.missed > missed)
             judgement.missed += job.program + ":" + std::to_string(block.line) + "\n";
+        if (judged->permits[i].permitted && block.result.verdict == core::Verdict::undecided)
+            judgement.unproven += job.program + ":" + std::to_string(block.line) + "\n";
     }
+    for (const core::Finding& finding : judged->findings)
+        if (finding.rule == "undecided" && finding.block
+            && judged->permits[core::value_of(*finding.block)].permitted)
+            judgement.unproven += job.program + ": " + finding.message + "\n";
 }
 
 void record(const app::EngineAgreement& counts) {

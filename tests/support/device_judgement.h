@@ -16,8 +16,9 @@ namespace test_support {
 /// The coprocessor's decisions on the blocks of programs compared with the exact engine.
 struct DeviceJudgement {
     app::EngineAgreement counts;
-    std::string missed; // violations that the device permitted: files and lines
-    std::string errors; // why the comparison failed
+    std::string missed;   // violations that the device permitted: files and lines
+    std::string unproven; // blocks that it permitted and that the exact engine does not clear
+    std::string errors;   // why the comparison failed
 
     bool operator==(const DeviceJudgement&) const = default;
 };
@@ -26,6 +27,7 @@ struct DeviceJudgement {
 struct JudgedProgram {
     std::vector<app::BlockPermit> permits;
     app::CheckedBlocks blocks; // from the exact engine
+    std::vector<core::Finding> findings;
 };
 
 /// Errors: those of the check and of the driver.

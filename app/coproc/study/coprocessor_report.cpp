@@ -165,6 +165,7 @@ Json block_json(const CoprocessorResult& result, size_t i) {
 std::string refusal(const CoprocessorResult& result, size_t block) {
     const BlockPermit& permit = result.run.blocks[block].permit;
     if (!permit.not_queried.empty()) return permit.not_queried;
+    if (permit.stop == hwsim::Stop::none && !permit.doubt.empty()) return permit.doubt;
     const std::string why = hwsim::name_of(permit.stop);
     if (!permit.pair) return why;
     const std::string pair =
@@ -266,10 +267,10 @@ std::string coprocessor_text(const CoprocessorResult& result) {
     add("energy", fmt::format("{:.3g} J while busy (estimate)", f.joules));
     add("smallest", fit_text(result.fits));
     add("engines",
-        fmt::format("exact engine: {}; coprocessor: permits {} of its violations, refuses {} "
-                    "of its clear blocks, cannot check {}",
-                    core::name_of(result.run.check.verdict), both.missed, both.false_alarms,
-                    both.not_queried));
+        fmt::format("exact engine: {}; coprocessor: permits {} of its violations and {} of its "
+                    "undecided blocks, refuses {} of its clear blocks, cannot check {}",
+                    core::name_of(result.run.check.verdict), both.missed, both.unproven,
+                    both.false_alarms, both.not_queried));
     return printable(text);
 }
 
@@ -315,6 +316,7 @@ std::string coprocessor_json(const CoprocessorResult& result) {
           {"engine",
            {{"verdict", core::name_of(result.run.check.verdict)},
             {"missed", both.missed},
+            {"undecided_permitted", both.unproven},
             {"false_alarms", both.false_alarms},
             {"not_asked", both.not_queried}}}}},
         {"fits", fits},

@@ -56,11 +56,13 @@ core::Result<void> ParallelCoprocessor::open() {
 }
 
 core::Result<void> ParallelCoprocessor::ask() {
-    const auto events = runner_.next_events();
-    if (!events) return {};
-    if (auto pushed = device_->push(*events, runner_.machine()); !pushed) return pushed;
+    const auto block = runner_.next_block();
+    if (!block) return {};
+    if (auto pushed = device_->push(block->events, runner_.machine(), block->doubt); !pushed)
+        return pushed;
     for (auto& [elements, device] : others_)
-        if (auto pushed = device->push(*events, runner_.machine()); !pushed) return pushed;
+        if (auto pushed = device->push(block->events, runner_.machine(), block->doubt); !pushed)
+            return pushed;
     return {};
 }
 

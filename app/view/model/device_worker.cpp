@@ -150,7 +150,7 @@ std::shared_ptr<const DeviceStudy> study_of(CoprocessorResult result) {
 DeviceAnswer answer_of(const DeviceStudy* study, size_t block) {
     if (!study || block >= study->size()) return DeviceAnswer::unknown;
     const BlockPermit& permit = study->result->run.blocks[block].permit;
-    if (!permit.not_queried.empty()) return DeviceAnswer::not_queried;
+    if (!permit.is_checked()) return DeviceAnswer::not_queried;
     if (!permit.permitted) return DeviceAnswer::refused;
     if (study->result->timing.blocks[block].is_late()) return DeviceAnswer::late;
     return permit.segments == 0 ? DeviceAnswer::nothing : DeviceAnswer::permitted;

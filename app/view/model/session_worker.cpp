@@ -200,8 +200,9 @@ void WorkerSession::show(const ShowRequest& request) {
     if (const auto gone = session_->go_to(view->block); !gone) return refuse(gone.error());
     view->scene = scene_at(view->block);
     const ControlValues before = values_of(*session_);
-    const auto ahead = first_events([&](const BlockVisit& visit) { session_->visit_ahead(visit); });
-    const std::vector<core::Event> events = ahead.value_or(std::vector<core::Event>());
+    const auto ahead =
+        first_block([&](const BlockVisit& visit) { session_->visit_ahead(visit); }, true);
+    const std::vector<core::Event> events = ahead ? ahead->events : std::vector<core::Event>();
     view->poses = poses_of(view->scene->setup.machine, events);
     view->tool = tool_of(events, session_->tool());
     if (!request.at_end) surface_->update(session_->stock());

@@ -203,6 +203,7 @@ void BlockRun::execute_motion(const Motion& motion) {
     } else if (path.legs.empty() || !path.legs[0].start_known) {
         check_from_unknown(motion, path);
     } else if (block.judgement) {
+        check_corner(motion, path);
         follow_path(motion, path);
     } else if (motion.stops_at_contact && use(motion) != FluteUse::cutting) {
         check_probing(motion, path, before);

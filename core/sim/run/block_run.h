@@ -176,20 +176,11 @@ struct BlockRun {
     /// Measures all bodies at rest wherever the machine may be.
     void check_rest(const Path& path);
     void check_corner(const Motion& motion, const Path& path);
-    /// The corner before lines that may be joined with these.
-    void check_joined_after_corner(const Motion& motion, const Path& path);
-    /// A corner of LinuxCNC at which other axes than X, Y and Z move.
-    void check_turning_corner(const Motion& motion, const Path& path,
-                              const std::vector<Leg>& before, const CornerBlend& blend);
     /// Checks legs that the machine makes while it ends the motion of which `last.rest` is left.
     void check_beside_rest(const std::vector<Leg>& legs, bool may_cut);
     /// Whether the flutes may meet the stock at the corner where a motion begins, because they cut
     /// in it or in the feed before.
     bool flutes_may_cut(const Motion& motion) const;
-    /// Whether the flutes may come as far as the stock's box on legs.
-    bool flutes_reach_stock(const std::vector<Leg>& legs) const;
-    /// How far the flutes may be off their cuts while the rotary axes are off by `turn`, radians.
-    double off_by_turn(const std::vector<Leg>& legs, double turn) const;
     /// Checks that bodies keep clear on legs `anywhere` in a region, or within `deviation` of the
     /// path `along` it, if that is stated. `may_cut`: the flutes may meet the stock.
     ///
