@@ -160,6 +160,10 @@ BlockPermit answered(PushedBlock block, const hwsim::DeviceReport& report,
     if (report.stop != hwsim::Stop::none) note_stop(block, report, setup);
     BlockPermit& permit = block.permit;
     if (permit.stop == hwsim::Stop::none) permit.report = report;
+    const uint32_t last = block.first + static_cast<uint32_t>(block.asked.size()) - 1;
+    if (permit.stop == hwsim::Stop::none && !block.asked.empty()
+        && static_cast<int32_t>(report.permitted - last) < 0)
+        deny(permit, "the device has not permitted all of it");
     permit.permitted = permit.is_checked() && permit.stop == hwsim::Stop::none;
     return std::move(permit);
 }

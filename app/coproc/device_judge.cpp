@@ -315,12 +315,8 @@ void DevicePipeline::State::close(const hwsim::DeviceReport& report) {
 
 void DevicePipeline::State::take_stop() {
     const hwsim::DeviceReport report = check_->report();
-    const auto refused = std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) {
-        return p.is_pushed && is_of(p.pushed, report.stop_sequence);
-    });
-    // A fault without a segment counts for the oldest block.
-    const auto in_front = refused == pending_.end() ? 0 : std::distance(pending_.begin(), refused);
-    for (auto i = 0 * in_front; i < in_front; ++i) close(permitted(pending_.front()));
+    // All blocks that were permitted are closed, so the oldest one has stopped the device, or is
+    // the first one that a fault leaves without a permit.
     if (!pending_.empty()) {
         if (report.stop != hwsim::Stop::violation) {
             pending_.front().end = device_.state.cycle;

@@ -170,9 +170,9 @@ core::Result<LostAxes> write_work_offset(Execution& execution, const CodeWord& e
     return lost;
 }
 
-void use(Execution& execution, const Offsets& offsets) {
+void use(Execution& execution, const Offsets& offsets, bool is_told = true) {
     change_offsets(execution, offsets);
-    execution.emit(SetOffset{offsets});
+    execution.emit(SetOffset{offsets, is_told});
 }
 
 /// The position of these axes gets the given coordinates, as after G92 at an unknown position.
@@ -186,7 +186,7 @@ void lose_offsets(Execution& execution, const LostAxes& lost) {
     }
     if (offsets == modal.offsets) return;
     modal.suspended_axis = offsets.axis;
-    use(execution, offsets);
+    use(execution, offsets, false);
     for (size_t axis = 0; axis < axis_count; ++axis)
         if (const Word* word = execution.statement.word(axis_letters[axis]); word && lost[axis])
             modal.position[axis] = axis_value(execution, axis, *word);
@@ -198,19 +198,21 @@ void lose_offsets(Execution& execution, const LostAxes& lost) {
 /// Source: rs274 2.9, probed.
 void use_written_offset(Execution& execution, const CodeWord& entry) {
     ModalState& modal = execution.modal();
+    const auto written = work_offset_index(execution, entry);
+    const bool is_told = written && *written == modal.offsets.active;
     const Offsets before = modal.offsets;
     Offsets offsets = before;
     offsets.work = in_effect(*execution.state.tables, offsets.active);
     const bool turned = before.work.rotation_deg != offsets.work.rotation_deg;
     const bool shifted = before.axis[0] != 0.0 || before.axis[1] != 0.0;
     if (!execution.dialect.offset_writes_miss_axis_offset || !turned || !shifted)
-        return use(execution, offsets);
+        return use(execution, offsets, is_told);
     Offsets plain_before = counted_offsets(before), plain = counted_offsets(offsets);
     plain_before.axis = plain.axis = zero_position;
     modal.position =
         program_from_machine(plain, machine_from_program(plain_before, modal.position));
     modal.offsets = offsets;
-    execution.emit(SetOffset{offsets});
+    execution.emit(SetOffset{offsets, is_told});
     execution.warn(
         entry.word->span,
         "G10 rotates the work offset while G92 or G52 is on: the control loses its position, and "
@@ -235,10 +237,10 @@ core::Result<void> select_offset(Execution& execution) {
     if (!entry) return {};
     Offsets offsets = execution.modal().offsets;
     FEELER_TRY(offsets.active, selected_offset(execution, *entry));
-    const bool stays =
-        execution.dialect.same_offset_stays && offsets.active == execution.modal().offsets.active;
+    const bool is_same = offsets.active == execution.modal().offsets.active;
+    const bool stays = execution.dialect.same_offset_stays && is_same;
     if (!stays) offsets.work = in_effect(*execution.state.tables, offsets.active);
-    use(execution, offsets);
+    use(execution, offsets, !is_same);
     return {};
 }
 
@@ -397,7 +399,7 @@ core::Result<void> set_axis_offset(Execution& execution) {
             if (const Word* word = execution.statement.word(axis_letters[axis]);
                 word && !stays_as_stated(execution, axis))
                 modal.position[axis] = axis_value(execution, axis, *word);
-        execution.emit(SetOffset{offsets});
+        execution.emit(SetOffset{offsets, true});
         return {};
     }
     use(execution, offsets);

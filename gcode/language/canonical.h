@@ -97,6 +97,9 @@ struct SelectPlane {
 /// A work offset, G52 or G92 changed, or another work offset was activated.
 struct SetOffset {
     Offsets offsets; // all active offsets after the change
+    // The control is told, and LinuxCNC waits for the end of the motion before it. Not so if only
+    // a parameter is written, or the offset was in use.
+    bool is_told = false;
 
     bool operator==(const SetOffset&) const = default;
 };

@@ -263,7 +263,7 @@ struct Visitor {
     }
     void operator()(const SetOffset& command) {
         lowering.offsets = command.offsets;
-        come_to_rest();
+        if (command.is_told) come_to_rest();
     }
     void operator()(const SelectTool&) {}
     void operator()(const Coolant&) { come_to_rest(); }

@@ -64,16 +64,14 @@ module gap_unit #(
   logic [STAGES:GAPS+1] fits;
   always_ff @(posedge clk) fits <= {fits[STAGES-1:GAPS+1], range_x & range_y & range_z};
 
-  // Stages 5 to 7: the products, twice registered for the multipliers, and their sum.
-  logic [47:0] square_x[1:2], square_y[1:2];
+  // Stages 5 to 7: the squares, and their sum.
+  logic [47:0] square_x, square_y;
+  squarer #(24) squarer_x (.clk, .root(gap_x), .square(square_x));
+  squarer #(24) squarer_y (.clk, .root(gap_y), .square(square_y));
   logic [49:0] level[LEVEL:STAGES-1];
   logic [23:0] height[GAPS+1:APART];
   always_ff @(posedge clk) begin
-    square_x[1] <= 48'(gap_x) * 48'(gap_x);
-    square_y[1] <= 48'(gap_y) * 48'(gap_y);
-    square_x[2] <= square_x[1];
-    square_y[2] <= square_y[1];
-    level[LEVEL] <= 50'(square_x[2]) + 50'(square_y[2]);
+    level[LEVEL] <= 50'(square_x) + 50'(square_y);
     for (int i = LEVEL + 1; i < STAGES; i++) level[i] <= level[i-1];
     height[GAPS+1] <= gap_z;
     for (int i = GAPS + 2; i <= APART; i++) height[i] <= height[i-1];
@@ -89,17 +87,15 @@ module gap_unit #(
   logic signed [26:0] less_radius;
   logic [24:0] apart;
   logic [STAGES-1:ROOT+1] has_radius;
-  logic [49:0] square_apart[1:2];
-  logic [47:0] square_height[1:2];
+  logic [49:0] square_apart;
+  logic [47:0] square_height;
+  squarer #(25) squarer_apart (.clk, .root(apart), .square(square_apart));
+  squarer #(24) squarer_height (.clk, .root(height[APART]), .square(square_height));
   always_ff @(posedge clk) begin
     less_radius <= $signed({2'b0, root}) + $signed({26'd0, has_rest}) - $signed({7'd0, radius[ROOT]});
     has_radius <= {has_radius[STAGES-2:ROOT+1], radius[ROOT] != 0};
     apart <= less_radius < 0 ? '0 : less_radius[24:0];
-    square_apart[1] <= 50'(apart) * 50'(apart);
-    square_apart[2] <= square_apart[1];
-    square_height[1] <= 48'(height[APART]) * 48'(height[APART]);
-    square_height[2] <= square_height[1];
-    squared <= (has_radius[STAGES-1] ? square_apart[2] : level[STAGES-1]) + 50'(square_height[2]);
+    squared <= (has_radius[STAGES-1] ? square_apart : level[STAGES-1]) + 50'(square_height);
   end
 
   device::squared_t squared;
@@ -152,6 +148,21 @@ module gap_axis (
     in_range <= fits_3;
     if (gap_below > 0 && gap_below >= gap_above) gap <= gap_below[23:0];
     else gap <= gap_above > 0 ? gap_above[23:0] : '0;
+  end
+endmodule
+
+// A square, two cycles later: registered behind the multiplier and once more.
+module squarer #(
+    parameter int BITS = 25
+) (
+    input logic clk,
+    input logic [BITS-1:0] root,
+    output logic [2*BITS-1:0] square
+);
+  logic [2*BITS-1:0] product;
+  always_ff @(posedge clk) begin
+    product <= (2 * BITS)'(root) * (2 * BITS)'(root);
+    square <= product;
   end
 endmodule
 

@@ -205,11 +205,10 @@ module permit_unit #(
     end else if (has_watchdog_stop) reason = host_is_silent ? device::HOST_SILENT : device::MEMORY_STALLED;
   end
 
-  // The square of the threshold and its reserve; a measurement without a threshold has no limit.
-  logic [24:0] kept;
+  // A measurement without a threshold has no limit.
   logic [50:0] limit;
-  assign kept = {2'b00, waiting.threshold} + 25'd3;
-  assign limit = waiting.kind == device::MEASURE && waiting.threshold == 0 ? 51'd1 << 50 : 51'(kept * 51'(kept));
+  search_limit limit_of_waiting (
+      .threshold(waiting.threshold), .is_measured(waiting.kind == device::MEASURE), .limit);
 
   logic [63:0] taken, slack;
   logic [31:0] cycles_left;
@@ -333,4 +332,15 @@ module permit_unit #(
 `ifdef PROOF
 `include "permit_proof.sv"
 `endif
+endmodule
+
+// The least squared distance that is permitted, in the cycle in which it is asked for.
+module search_limit (
+    input logic [22:0] threshold,
+    input logic is_measured,
+    output logic [50:0] limit
+);
+  logic [23:0] kept;
+  assign kept = {1'b0, threshold} + 24'd3;
+  assign limit = is_measured && threshold == 0 ? 51'd1 << 50 : 51'(48'(kept) * 48'(kept));
 endmodule

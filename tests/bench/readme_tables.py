@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Puts tables into a page: those on standard input replace the ones with the same heading.
 
-usage: COMMAND | readme_tables.py PAGE.md [--check]
+usage: COMMAND | readme_tables.py PAGE.md [--check] [--of COMMAND]
 
-Rows are found by their first cell; those of the page that are not in the input stay, new ones come last. It fails
+With --of, the tables are what that command prints. Rows are found by their first cell; those of the page that are not in the input stay, new ones come last. It fails
 if the page has no table with the heading. With --check it writes nothing and fails if something would change.
 """
 
+import subprocess
 import sys
 
 
@@ -52,7 +53,12 @@ def updated(page, text):
 def main(path, *options):
     with open(path, encoding="utf-8") as file:
         page = file.read()
-    text, missing = updated(page, sys.stdin.read())
+    if "--of" in options:
+        command = options[options.index("--of") + 1]
+        tables = subprocess.run([command], stdout=subprocess.PIPE, text=True, check=True).stdout
+    else:
+        tables = sys.stdin.read()
+    text, missing = updated(page, tables)
     if missing:
         sys.exit(f"{path} has not one table with the heading:\n" + "\n".join(missing))
     if "--check" in options:

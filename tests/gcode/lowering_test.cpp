@@ -185,6 +185,21 @@ TEST(Lowering, RestsWhereLinuxcncWaitsForTheEndOfAMotion) {
     EXPECT_EQ(rests("G90"), 5U) << "as it starts";
     EXPECT_EQ(rests("G61"), 0U) << "it rests anyway";
     EXPECT_EQ(rests("G64", DialectId::fanuc), 0U);
+    // What only the interpreter notes is no rest: an offset that is in use, and another one's data.
+    const auto rests_at = [&](const std::string& line) {
+        Environment environment = example();
+        environment.dialect = DialectId::linuxcnc;
+        environment.control.follows_start = true;
+        size_t count = 0;
+        for (const core::Event& event :
+             events_of("G54 G64\nG1 F500 X10\n" + line + "\nX20\n", environment))
+            count += std::holds_alternative<core::Dwell>(event);
+        return count;
+    };
+    for (const char* line : {"G54", "G10 L2 P3 X0", "G10 L20 P3 X0", "#5241=1", "#5221=1"})
+        EXPECT_EQ(rests_at(line), 0U) << line;
+    for (const char* line : {"G55", "G10 L2 P1 X0", "G10 L2 P0 X0", "G92 X5", "G92.1", "G52 X0"})
+        EXPECT_EQ(rests_at(line), 1U) << line;
 }
 
 TEST(Lowering, PassesOnToolsSpindleLengthsAndDwells) {

@@ -70,6 +70,7 @@ TEST(RealPrograms, AreRefusedByTheCoprocessorWhereTheExactEngineFindsAViolation)
     const auto all = judged_by(hwsim::functional_device({}).value());
     EXPECT_EQ(judged_by(hwsim::emulated_device({}).value()), all);
     EXPECT_EQ(all.missed, "");
+    EXPECT_EQ(all.unproven, "");
     EXPECT_EQ(all.errors, "");
     test_support::record(all.counts);
     EXPECT_GT(all.counts.blocks, 1'000);

@@ -3,8 +3,9 @@
 
 Usage: cost.py SOURCE_DIRECTORY [--check] [UNIT...]
 
-With --check it fails if a unit needs more than its limits below, or if something becomes a latch. The units are
-those of LIMITS unless some are named; search_element takes ten minutes, register_file two.
+With --check it fails if a unit needs more than its limits below, or if anything in the whole device becomes a latch.
+The units are those of LIMITS unless some are named; search_element takes ten minutes, register_file two. Those two
+have no limits.
 """
 
 import json
@@ -50,15 +51,21 @@ def files_of(source, unit):
     return [str(paths[name]) for name in FILES if name in needed]
 
 
+def elaborated(source, unit):
+    """The commands that read a unit and fail if something in it becomes a latch."""
+    return (f"read_verilog -sv {' '.join(files_of(source, unit))}; hierarchy -top {unit}; proc; check -assert; "
+            "select -assert-none t:$dlatch t:$adlatch t:$dlatchsr")
+
+
+def run_yosys(unit, commands):
+    result = subprocess.run(["yosys", "-q", "-p", commands], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if result.returncode != 0:
+        sys.exit(f"{unit}: {result.stdout[-2000:]}")
+
+
 def cells_of(source, unit, synthesis):
     with tempfile.TemporaryDirectory() as folder:
-        files = " ".join(files_of(source, unit))
-        commands = (f"read_verilog -sv {files}; hierarchy -top {unit}; proc; check -assert; "
-                    f"select -assert-none t:$dlatch t:$adlatch t:$dlatchsr; "
-                    f"{synthesis} -top {unit}; tee -o {folder}/stat.json stat -json")
-        result = subprocess.run(["yosys", "-q", "-p", commands], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        if result.returncode != 0:
-            sys.exit(f"{unit}: {result.stdout[-2000:]}")
+        run_yosys(unit, f"{elaborated(source, unit)}; {synthesis} -top {unit}; tee -o {folder}/stat.json stat -json")
         text = pathlib.Path(folder, "stat.json").read_text(encoding="utf-8")
     # yosys 0.23 writes a line of its log before the object.
     return json.loads(text[text.index("{"):])["design"]["num_cells_by_type"]
@@ -81,8 +88,10 @@ def main(source, *arguments):
             problems += [f"{unit} for {family} needs {cost}; its limits are {limits}"
                          for family, cost, limits in zip(FAMILIES, costs, LIMITS[unit])
                          if any(c > l for c, l in zip(cost, limits))]
-    if "--check" in arguments and problems:
-        sys.exit("\n".join(problems))
+    if "--check" in arguments:
+        run_yosys("coprocessor", elaborated(source, "coprocessor"))
+        if problems:
+            sys.exit("\n".join(problems))
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ FAULTS = [
     ("permit_unit.sv", "entry_valid && !flush", "entry_valid"),
     ("permit_unit.sv", "first.kind == device::PERMIT && is_searched_answer", "first.last && is_searched_answer"),
     ("permit_unit.sv", "reason_sequence = permitted_now + 32'd1", "reason_sequence = permit_sequence + 32'd1"),
-    ("permit_unit.sv", "waiting.threshold} + 25'd3", "waiting.threshold} + 25'd2"),
+    ("permit_unit.sv", "{1'b0, threshold} + 24'd3", "{1'b0, threshold} + 24'd2"),
     ("permit_unit.sv", "has_model_now = is_cleared ? '0 : has_model", "has_model_now = has_model"),
     ("permit_unit.sv", "$signed(slack) < $signed(least_slack)", "slack < least_slack"),
     ("permit_unit.sv", "number_of(release_element, release_thread)] = 1'b0", "number_of(release_element, 4'd0)] = 1'b0"),

@@ -24,6 +24,8 @@ UNITS = {
     "offset_axis": ("path_unit", 55),
     "gap_axis": ("gap_unit", 65),
     "root_pipeline": ("gap_unit", 55),
+    "squarer": ("gap_unit", 48),
+    "search_limit": ("permit_unit", 38),
     "check_unit": ("check_unit", 80),
 }
 
@@ -47,7 +49,7 @@ def wrapper(unit, ports):
     """The unit between two shift registers, and their length."""
     inputs = [(name, width) for name, direction, width in ports if direction == "input" and name != "clk"]
     outputs = [(name, width) for name, direction, width in ports if direction == "output"]
-    wires, used = [], {"input": 1, "output": 0}
+    wires, used = [f".{name}({name})" for name, _, _ in ports if name == "clk"], {"input": 1, "output": 0}
     for kind, group in (("input", inputs), ("output", outputs)):
         for name, width in group:
             wires.append(f".{name}({kind}s[{used[kind] + width - 1}:{used[kind]}])")
@@ -59,7 +61,7 @@ def wrapper(unit, ports):
   always @(posedge clk) inputs <= {{inputs, in}};
   always @(posedge clk) kept <= inputs[0] ? outputs : kept << 1;
   assign out = kept[{used['output'] - 1}];
-  {unit} placed_unit (.clk(clk), {', '.join(wires)});
+  {unit} placed_unit ({', '.join(wires)});
 endmodule
 """, used["input"] + used["output"]
 
