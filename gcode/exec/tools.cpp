@@ -613,6 +613,14 @@ core::Result<void> name_tool(Execution& execution) {
                           "LinuxCNC leaves out the straight feed before this M61; program G4 P0 "
                           "between them",
                           execution.statement.of(ModalGroup::tool_change)->word->span);
+    const std::optional<core::ToolNumber> before = execution.modal().tool;
+    if (before && *before != ToolNumber(tool))
+        execution.warn(
+            word->span,
+            fmt::format("M61 changes no tool: tool {} stays in the spindle unless somebody "
+                        "changes it by hand. From here on the program is checked with "
+                        "tool {}",
+                        core::value_of(*before), tool));
     execution.modal().tool = ToolNumber(tool);
     execution.emit(NameTool{tool == 0 ? std::nullopt : std::optional(ToolNumber(tool))});
     return {};

@@ -95,6 +95,9 @@ TEST(Linuxcnc, ToolTableEntriesAreWritten) {
 TEST(Linuxcnc, TheToolInTheSpindleCanBeNamed) {
     EXPECT_EQ(traced("M61 Q3"), "name_tool tool=3\n");
     EXPECT_THAT(refused("M61"), HasSubstr("M61 needs a Q word"));
+    EXPECT_THAT(warnings_of("T1 M6\nM61 Q3", DialectId::linuxcnc),
+                HasSubstr("tool 1 stays in the spindle"));
+    EXPECT_EQ(warnings_of("M61 Q1\nM61 Q1\nT2 M6\nM2", DialectId::linuxcnc), "");
 }
 
 /// It keeps a straight feed back to join it with the next, and M61 drops it.
