@@ -176,8 +176,8 @@ std::optional<LineRun> take(LineSpace& space, uint32_t count);
 
 void give_back(LineSpace& space, const LineRun& run);
 
-/// The least integer whose square is at least `square`, for squares below 2^50. In the circuit: 25
-/// stages, one subtraction each.
+/// The least integer whose square is at least `square`, for squares below 2^50. In the circuit: 13
+/// stages of two bits.
 inline int64_t root_up(int64_t square) {
     // The square root of a double is correctly rounded, so one step either way makes it exact.
     auto root = static_cast<int64_t>(std::sqrt(static_cast<double>(square)));
