@@ -167,7 +167,9 @@ Line& image_of(Driver& driver, uint32_t line) {
 /// Puts lines into the ring once it has room, without the doorbell. A stopped device ignores them.
 void add_to_ring(Driver& driver, std::vector<Line> lines) {
     driver.lines_made += lines.size();
-    const auto has_room = [&] { return driver.tail + lines.size() - driver.head <= ring_size; };
+    const auto has_room = [&] {
+        return uint32_t{driver.tail - driver.head} + lines.size() <= ring_size;
+    };
     while (!has_room()) {
         ring_doorbell(driver);
         driver.head = read(driver, Register::ring_head);
