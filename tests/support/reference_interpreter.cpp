@@ -71,6 +71,7 @@ void take_offset(const std::string& key, Words& words, PlainState& state) {
 
 void take_state(Words& words, PlainState& state) {
     const std::map<std::string, double*> numbers = {{"feed", &state.feed},
+                                                    {"turning_feed", &state.turning_feed},
                                                     {"pitch", &state.pitch},
                                                     {"speed", &state.speed},
                                                     {"fastest_speed", &state.fastest_speed},

@@ -221,12 +221,15 @@ class Plain:
         self.line = 0
         self.threading = False
         self.feed = 0.0
+        self.feed_unit = 1.0
         self.is_per_turn = False
 
     def say_feed(self):
-        """The feed rate in mm/min, also with G95."""
+        """The feed rate in mm/min, also with G95; and that of rotary axes alone, which is in degrees also if it was
+        programmed in inches (emccanon.cc, SET_FEED_RATE)."""
         turns = self.state.get('speed', (0.0,))[0] if self.is_per_turn else 1.0
         self.state['feed'] = (self.feed * turns,)
+        self.state['turning_feed'] = (self.feed * turns if self.is_per_turn else self.feed / self.feed_unit,)
 
     def event(self, name, *values):
         for key, value in self.state.items():
@@ -350,7 +353,7 @@ def lay_together(module, rs, plain):
                 line, _, values = waiting.pop()
                 if abs(values[0] * MM - feed) < 1e-3 * unit:
                     feed = values[0] * MM
-            plain.feed = feed
+            plain.feed, plain.feed_unit = feed, unit
             plain.say_feed()
         elif name in MODULE_NAMES:
             while waiting and waiting[-1][1] == 'set_feed_rate':

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -89,6 +90,29 @@ std::string own_difference(const PlainCommand& reference, const PlainCommand& ou
         return "pitch";
     if (!is_motion(reference) && !all_near(reference.values, ours.values, printed)) return "values";
     return {};
+}
+
+/// Whether a feed moves rotary axes only; empty if that does not follow from the commands.
+std::optional<bool> turns_only(const std::vector<PlainCommand>& commands, size_t i) {
+    size_t before = i;
+    while (before > 0 && !is_motion(commands[before - 1])) --before;
+    if (before == 0) return std::nullopt;
+    const PlainCommand& from = commands[before - 1];
+    const PlainState &a = from.state, &b = commands[i].state;
+    if (a.work != b.work || a.axis != b.axis || a.tool_offset != b.tool_offset
+        || a.rotation_deg != b.rotation_deg)
+        return std::nullopt;
+    for (size_t axis = 0; axis < from.end.size(); ++axis)
+        if (axis / 3 != 1 && from.end[axis] != commands[i].end[axis]) return false;
+    return from.end != commands[i].end;
+}
+
+/// The reference has its feed for linear axes, and for rotary axes alone.
+void choose_feed(PlainCommand& reference, const std::vector<PlainCommand>& ours, size_t i) {
+    if (reference.kind != "straight_feed" || ours[i].kind != reference.kind) return;
+    const bool is_nearer = near(reference.state.turning_feed, ours[i].state.feed, exact);
+    if (turns_only(ours, i).value_or(is_nearer))
+        reference.state.feed = reference.state.turning_feed;
 }
 
 /// At the end of a program the reference resets modes that no longer matter.
@@ -198,12 +222,13 @@ void compare_endings(const PlainRun& reference, const PlainRun& ours, RunCompari
 RunComparison compare_runs(const PlainRun& reference, const PlainRun& ours,
                            const std::vector<std::string>& accepted_refusals) {
     RunComparison comparison;
-    const auto there = comparable(reference, reference.refused);
+    auto there = comparable(reference, reference.refused);
     auto here = comparable(ours, {});
     if (!reference.has_actions) here = without_actions(std::move(here));
     comparison.total = there.size();
     for (size_t i = 0; i < std::min(there.size(), here.size()); ++i) {
         if (there[i].kind == "nurbs_feed") skip_to_end_of_spline(there[i], here, i);
+        choose_feed(there[i], here, i);
         const std::string what = difference_of(there[i], here[i], reference.has_actions);
         comparison.equal += what.empty();
         if (what.empty()) continue;
