@@ -195,7 +195,7 @@ Result<PushedBlock> CoprocessorCheck::push(std::span<const core::Event> block,
                   > 1;
     hold(before.tool, at);
     at.tool_known = before.tool_known;
-    at.start_is_assumed = before.is_assumed != std::array<bool, 3>{};
+    at.is_assumed = before.is_assumed;
     for (size_t i = 0; i < core::axis_count; ++i)
         if (before.spread.below[i] != 0.0 || before.spread.above[i] != 0.0)
             at.uncertain |= static_cast<core::AxisSet>(1U << i);
@@ -239,7 +239,9 @@ Result<void> CoprocessorCheck::query_event(const core::Event& event, At& at, Pus
     if (const auto* spindle = std::get_if<core::SpindleChange>(&event)) at.spindle = *spindle;
     if (const auto* change = std::get_if<core::PathModeChange>(&event))
         change_mode(at.corners, *change, setup_->machine);
+    if (std::holds_alternative<core::Dwell>(event)) at.corners.last = {};
     if (const auto* change = std::get_if<core::ToolChange>(&event)) {
+        at.corners.last = {};
         hold(change->tool, at);
         return query_standstill(at, block);
     }
@@ -267,6 +269,7 @@ Result<void> CoprocessorCheck::query_standstill(At& at, PushedBlock& block) {
 Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
                                             PushedBlock& block) {
     const core::Path path = path_of(motion, setup_->machine, core::chord_error(setup_->mesh_size));
+    if (motion.from != at.position) at.corners.last = {};
     at.position = motion.to;
     const core::AxisSet uncertain =
         std::exchange(at.uncertain, uncertain_after(motion, at.uncertain));
@@ -287,7 +290,10 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
         deny(block.permit, "the tool is unknown", Teller::run);
         return {};
     }
-    const bool may_hold_any = !at.tool && !at.called && !at.tool_known && !at.start_is_assumed;
+    for (size_t i = 0; i < at.is_assumed.size(); ++i)
+        at.is_assumed[i] = at.is_assumed[i] && motion.from[i] == motion.to[i];
+    const bool may_hold_any =
+        !at.tool && !at.called && !at.tool_known && at.is_assumed == std::array<bool, 3>{};
     if (!at.tool && !may_hold_any && setup_->machine.bodies.empty()) return {};
     if (path.legs.empty() || !path.legs[0].start_known) {
         if (!at.tool && setup_->machine.bodies.empty()) return {};
@@ -302,7 +308,6 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     if (cutting) {
         at.corners.note_cut(at.called, motion.arc.has_value());
         at.corners.by_axes_of_cuts = std::max(at.corners.by_axes_of_cuts, off_by_axes);
-        at.corners.has_cut = true;
     }
     const core::CornerPlan corner =
         plan_corner({.setup = *setup_,
@@ -315,6 +320,7 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
                      .stock = at.stock.outer_box},
                     at.corners);
     const bool between_feeds = !rapid && at.corners.last.kind != core::MotionKind::rapid;
+    if (auto done = update_models(at); !done) return done;
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     // A rapid that rises leaves its cut sideways at a rounded corner before it.
     const bool is_rounded =
@@ -379,7 +385,7 @@ bool is_plain(const core::Leg& leg) {
 /// The legs beside all parts of the rest of a motion, in parts small enough.
 std::vector<core::Leg> beside_rest(const std::vector<core::Leg>& rest,
                                    const std::vector<core::Leg>& legs) {
-    constexpr size_t most_parts = 24;
+    constexpr size_t most_parts = 12;
     constexpr double small = 25.0; // size of a part
     std::vector<core::RestPart> parts;
     for (const core::Leg& leg : rest) parts.push_back({.rest = &leg});
@@ -487,7 +493,8 @@ Result<void> CoprocessorCheck::query_leg(const core::Leg& leg, bool cutting, At&
     for (const core::MovingBody& body : moving_bodies(*setup_, at.tool ? *at.tool : nothing)) {
         const bool cuts = cutting && body.kind == core::PartKind::flutes;
         const Question stock = question(body, {}, leg, at);
-        if (!cuts && !is_far(stock, core::convex(at.stock.outer_box), block)) {
+        if (!cuts && !is_clear_at_corner(stock, at.stock.outer_box, at)
+            && !is_far(stock, core::convex(at.stock.outer_box), block)) {
             const auto ask = is_in_own_cut(stock, at) ? &CoprocessorCheck::measure_pair
                                                       : &CoprocessorCheck::query_pair;
             if (auto asked = (this->*ask)(stock, stock_, block); !asked) return asked;
@@ -498,12 +505,19 @@ Result<void> CoprocessorCheck::query_leg(const core::Leg& leg, bool cutting, At&
                 || (cuts && fixture.expendable))
                 continue;
             const Question q = question(body, i, leg, at);
+            if (is_clear_at_corner(q, bounds(fixture.body), at)) continue;
             if (is_far(q, fixture.body, block)) continue;
             FEELER_TRY(const SlotNumber work, models_.of_fixture(driver_, i));
             if (auto asked = query_pair(q, work, block); !asked) return asked;
         }
     }
     return {};
+}
+
+bool CoprocessorCheck::is_clear_at_corner(const Question& q, const core::Aabb& other,
+                                          const At& at) {
+    const double keep = q.allowance.distance + q.way.error + q.off_path;
+    return at.at_corner && distance(bounds(q.body, q.way), other) > keep;
 }
 
 bool CoprocessorCheck::is_far(const Question& q, const core::ExactBody& other,
@@ -526,15 +540,19 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
     const core::Allowance allowance = allowance_of(*setup_, pair);
     const double off = path_deviation(pair, at.off_motion, at.corners);
     // Bodies may touch if they can deviate from the path by no more than the contact tolerance.
-    const bool may_touch = allowance.distance <= core::resolution
-                           && (off <= contact_depth(allowance) || (!fixture && at.follows));
+    const bool may_touch =
+        allowance.distance <= core::resolution
+        && (off <= contact_depth(allowance)
+            || (!fixture && at.follows && at.tool && core::fits_own_cut(*at.tool, body.kind)));
     const core::RelativeLeg way = leg_against(*setup_, fixture, body, leg);
     return {body, pair, way, allowance, off, may_touch};
 }
 
 Result<void> CoprocessorCheck::update_models(At& at) {
     if (at.to_cut.empty()) return {};
+    const size_t logged = at.stock.log.size();
     for (const core::CutterSweep& sweep : at.to_cut) cut(at.stock, sweep);
+    at.corners.has_cut = at.corners.has_cut || at.stock.log.size() > logged;
     at.to_cut.clear();
     if (auto updated = hwsim::update_stock(driver_, stock_, at.stock); !updated)
         return tl::unexpected(std::move(updated).error());

@@ -113,10 +113,10 @@ private:
         core::CentreTracker centre;             // for a tool that does not cut at its centre
         std::optional<core::ToolNumber> called; // tool in the spindle, described or not
         bool tool_known = false;
-        bool start_is_assumed = false; // where the machine starts is not stated
-        bool is_cycle = false;         // the block has several motions
-        bool follows = true;           // the motion follows the tool's own cut or leaves it upwards
-        bool at_corner = false;        // of a motion, where nothing is cut yet
+        std::array<bool, 3> is_assumed{}; // X, Y, Z: not moved yet from an assumed start
+        bool is_cycle = false;            // the block has several motions
+        bool follows = true;    // the motion follows the tool's own cut or leaves it upwards
+        bool at_corner = false; // legs of a corner are asked about; they cut nothing
     };
     /// A body on the tool side over a leg, and its minimum clearance.
     struct Question {
@@ -136,7 +136,8 @@ private:
     /// Asks about the corner where a motion begins, if the control may round it.
     core::Result<void> query_corner(const core::CornerPlan& plan, bool between_feeds, At& at,
                                     PushedBlock& block);
-    /// Asks with each tool that may be in the spindle, which counts as empty, along legs.
+    /// With an unknown tool, which otherwise counts as none: asks along legs with each that it may
+    /// be.
     core::Result<void> query_each_tool(const std::vector<core::Leg>& legs, At& at,
                                        PushedBlock& block);
     core::Result<void> query_standstill(At& at, PushedBlock& block);
@@ -144,6 +145,9 @@ private:
     bool pushes_centre(const core::Leg& leg, bool cutting, At& at) const;
     Question question(const core::MovingBody& body, std::optional<size_t> fixture,
                       const core::Leg& leg, const At& at) const;
+    /// Whether, at a corner, boxes show that a body keeps its distance, so that no question is
+    /// needed: there are many at a corner.
+    static bool is_clear_at_corner(const Question& question, const core::Aabb& other, const At& at);
     /// Whether a machine body stays so far away that no question is needed.
     bool is_far(const Question& question, const core::ExactBody& other, PushedBlock& block) const;
     core::Result<void> update_models(At& at);

@@ -296,6 +296,16 @@ bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>
     return corners.has_cut && (rises || (!is_rapid && corners.by == corners.mode_of_cuts));
 }
 
+bool fits_own_cut(const ToolAssembly& tool, PartKind part) {
+    const auto radius_of = [&](PartKind kind) {
+        double radius = 0.0;
+        for (const ToolPart& one : tool.parts)
+            if (one.kind == kind) radius = std::max(radius, bounds(one.profile).max.x);
+        return radius;
+    };
+    return is_below_holder(part) && radius_of(part) <= radius_of(PartKind::flutes) + resolution;
+}
+
 void widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners,
            bool follows_cuts, bool touches_raw_stock) {
     const double off = path_deviation(pair.pair, of.of_feeds + of.by_axes, corners);

@@ -98,7 +98,7 @@ struct SelectPlane {
 struct SetOffset {
     Offsets offsets; // all active offsets after the change
     // The control is told, and LinuxCNC waits for the end of the motion before it. Not so if only
-    // a parameter is written, or the offset was in use.
+    // a parameter is written or the offset was in use, nor where that is not certain.
     bool is_told = false;
 
     bool operator==(const SetOffset&) const = default;

@@ -330,8 +330,9 @@ void BlockRun::conclude() {
         on_the_way.push_back(pair.upper);
         const bool is_doubtful =
             pair.verdict == Verdict::clear && state.corners.of_stock() + off_by_axes > 0.0;
-        const bool is_kept = follows && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
-        widen(pair, of, state.corners, follows,
+        const bool follows_it = follows && tool() && fits_own_cut(*tool(), pair.pair.part);
+        const bool is_kept = follows_it && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
+        widen(pair, of, state.corners, follows_it,
               is_doubtful && !is_kept && touches_no_doubtful_stock(pair));
         widen_by_stock(pair, setup.stock.deviation);
     }

@@ -27,8 +27,8 @@ struct CornerPlan {
     enum class Kind : uint8_t { nothing, region, beside_rest };
 
     Kind kind = Kind::nothing;
-    // Of a region: legs on which the bodies may be. `beside_rest`: what the machine makes while it
-    // ends the motion of which `RoundedCorners::last.rest` is left.
+    // Of a region: legs on which the bodies may be. `beside_rest`: the legs that the machine makes
+    // while `RoundedCorners::last.rest` of the motion before them is still left.
     std::vector<Leg> anywhere;
     // Of a region: the bodies also stay within `deviation` of these legs, unless there are none.
     std::vector<Leg> along;
