@@ -5,6 +5,7 @@
 
 #include "core/dbm/covered_path.h"
 #include "core/motion/path.h"
+#include "core/sim/run/corner_plan.h"
 #include "hwsim/body_cover.h"
 #include "hwsim/tool_model.h"
 

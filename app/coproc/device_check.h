@@ -5,11 +5,14 @@
 #include "app/coproc/device_answer.h"
 #include "core/motion/kinematics.h"
 #include "core/sim/moving_body.h"
-#include "core/sim/run/corner_plan.h"
 #include "core/sim/run/simulator.h"
 #include "core/sim/setup.h"
 #include "hwsim/body_cover.h"
 #include "hwsim/driver.h"
+
+namespace core {
+struct CornerPlan;
+}
 
 namespace app {
 
