@@ -250,12 +250,12 @@ class Machine:
         set_pin("feeler-tp.clear", "0")
 
     def wait_at_rest(self, seconds=60):
-        """Until nothing has moved for half a second."""
+        """Until nothing has moved for half a second. If only LinuxCNC waits for a busy machine, its velocity is not 0."""
         last, equal = None, 0
         for _ in within(seconds):
             self.poll()
             now = self.status.position[:6]
-            equal = equal + 1 if now == last else 0
+            equal = equal + 1 if now == last and self.status.current_vel == 0.0 else 0
             last = now
             if equal == 25:
                 return now
