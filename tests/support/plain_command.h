@@ -12,12 +12,12 @@ using Axes = std::array<double, 9>;
 
 /// The state during a command, from either interpreter.
 struct PlainState {
-    double feed = 0.0;         // mm/min, or mm/rev
-    double turning_feed = 0.0; // of rotary axes alone, if only the reference knows it
-    double pitch = 0.0;        // mm/rev of threads
-    int work_offset = 1;       // 1 is G54
-    Axes work{};               // its origin
-    Axes axis{};               // G92 and G52
+    double feed = 0.0;          // mm/min, or mm/rev
+    double turning_feed = -1.0; // of rotary axes alone; below 0: not known
+    double pitch = 0.0;         // mm/rev of threads
+    int work_offset = 1;        // 1 is G54
+    Axes work{};                // its origin
+    Axes axis{};                // G92 and G52
     Axes tool_offset{};
     double rotation_deg = 0.0;
     std::string plane = "XY"; // XY ZX YZ UV WU VW

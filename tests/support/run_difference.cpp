@@ -109,7 +109,9 @@ std::optional<bool> turns_only(const std::vector<PlainCommand>& commands, size_t
 
 /// The reference has its feed for linear axes, and for rotary axes alone.
 void choose_feed(PlainCommand& reference, const std::vector<PlainCommand>& ours, size_t i) {
-    if (reference.kind != "straight_feed" || ours[i].kind != reference.kind) return;
+    if (reference.kind != "straight_feed" || ours[i].kind != reference.kind
+        || reference.state.turning_feed < 0.0)
+        return;
     const bool is_nearer = near(reference.state.turning_feed, ours[i].state.feed, exact);
     if (turns_only(ours, i).value_or(is_nearer))
         reference.state.feed = reference.state.turning_feed;

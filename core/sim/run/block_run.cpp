@@ -325,12 +325,15 @@ void BlockRun::conclude() {
     const bool follows =
         follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
     const BlockDeviation of{off_path, off_path_rapids, off_by_axes};
+    const bool deviates =
+        tool()
+        && std::max({off_path, off_path_rapids, off_by_axes, state.corners.of_stock()}) > 0.0;
     std::vector<double> on_the_way; // distance of each pair on the programmed path
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
         const bool is_doubtful =
             pair.verdict == Verdict::clear && state.corners.of_stock() + off_by_axes > 0.0;
-        const bool follows_it = follows && tool() && fits_own_cut(*tool(), pair.pair.part);
+        const bool follows_it = follows && deviates && fits_own_cut(*tool(), pair.pair.part);
         const bool is_kept = follows_it && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
         widen(pair, of, state.corners, follows_it,
               is_doubtful && !is_kept && touches_no_doubtful_stock(pair));

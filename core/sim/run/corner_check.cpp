@@ -93,6 +93,10 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
 
 void BlockRun::check_corner(const Motion& motion, const Path& path) {
     RoundedCorners& corners = state.corners;
+    const CornerStart& last = corners.last;
+    const bool rounds = last.by > 0.0 || last.rapids.rounds() || last.mixed.rounds()
+                        || last.arcs.rounds() || last.turns.rounds();
+    if (!rounds && corners.left_after == 0.0) return;
     const CornerPlan plan = plan_corner({.setup = setup,
                                          .tool = tool(),
                                          .motion = motion,
