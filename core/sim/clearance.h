@@ -227,12 +227,12 @@ bool rises(const Leg& leg);
 bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
                   bool is_rapid);
 
-/// Widens the bounds of a pair by the possible deviation between its bodies.
-///
 /// Whether a part of a tool may have been given its room by the flutes, on the same path: it is no
 /// wider than they are. Other parts follow no cut.
 bool fits_own_cut(const ToolAssembly& tool, PartKind part);
 
+/// Widens the bounds of a pair by the possible deviation between its bodies.
+///
 /// For a pair with the stock that may touch, the verdict is kept if `follows_cuts` says that the
 /// same tool deviates as its cuts did or leaves them upwards: it moves where it has cut. Otherwise
 /// it is kept if the material that may be left at a corner is less than the contact depth.
