@@ -62,6 +62,20 @@ apt update || {
     die "cannot read the lists of $mirror: is there a network? FEELER_DEBIAN_MIRROR names another mirror"
 }
 
+# Fetches and unpacks a source package: the newest version that the mirror has. Its lists may name one whose files
+# it does not have.
+source_of() {
+    local package=$1 version
+    shift
+    for version in $(apt-cache -c "$work/apt.conf" showsrc --only-source "$package" \
+        | sed -n 's/^Version: //p' | sort -ruV); do
+        apt source --only-source "$@" "$package=$version" && return
+        grep -q ' 404 ' "$work/log" || return 1
+        say "the mirror does not have $package $version: trying the one before"
+    done
+    return 1
+}
+
 # Debian has the source of GCC, whose source package is large, in a package of its own, too.
 paths_of_gcc() {
     apt download gcc-12-source && mkdir libstdc++ \
@@ -76,11 +90,11 @@ for entry in "${missing[@]}"; do
     mkdir "$work/source/$package"
     cd "$work/source/$package"
     if [[ $part == orig ]]; then
-        apt source --only-source --tar-only "$package" && tar -xf ./*.orig.tar.*
+        source_of "$package" --tar-only && tar -xf ./*.orig.tar.*
     elif [[ $part == paths ]]; then
         paths_of_gcc
     else
-        apt source --only-source "$package"
+        source_of "$package"
     fi || {
         cat "$work/log" >&2
         die "cannot fetch the source package $package"
