@@ -52,6 +52,10 @@ void add(StateDigest& digest, const core::RoundedCorners& corners) {
     digest.add(corners.mode_of_cuts);
     digest.add(corners.by_axes_of_cuts);
     digest.add(uint64_t(corners.has_cut));
+    digest.add(corners.own.tool ? uint64_t(core::value_of(*corners.own.tool)) + 1 : 0);
+    digest.add(corners.own.by);
+    digest.add(uint64_t(corners.own.since_tool));
+    digest.add(uint64_t(corners.own.since_mode));
     add(digest, corners.rapids);
     add(digest, corners.mixed);
     add(digest, corners.arcs);

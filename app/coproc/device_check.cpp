@@ -306,8 +306,9 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     const bool cutting =
         !rapid && at.tool && turns_to_cut(at.spindle, *at.tool) && cuts_along(*at.tool, motion);
     const double off_by_axes = core::axis_tolerance_error(*setup_, at.tool, path);
+    if (auto done = update_models(at); !done) return done;
     if (cutting) {
-        at.corners.note_cut(at.called, motion.arc.has_value());
+        at.corners.note_cut(at.called, motion.arc.has_value(), at.stock.log.size());
         at.corners.by_axes_of_cuts = std::max(at.corners.by_axes_of_cuts, off_by_axes);
     }
     const core::CornerPlan corner =
@@ -321,7 +322,6 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
                      .stock = at.stock.outer_box},
                     at.corners);
     const bool between_feeds = !rapid && at.corners.last.kind != core::MotionKind::rapid;
-    if (auto done = update_models(at); !done) return done;
     const bool rises = std::all_of(path.legs.begin(), path.legs.end(), core::rises);
     // A rapid that rises leaves its cut sideways at a rounded corner before it.
     const bool is_rounded =
@@ -329,9 +329,14 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
     at.off_motion += off_by_axes;
     if (auto asked = query_corner(corner, between_feeds, at, block); !asked) return asked;
     at.corners.of_cuts = std::max(at.corners.of_cuts, corner.of_cuts);
-    at.follows =
-        off_by_axes + at.corners.by_axes_of_cuts == 0.0
-        && follows_cuts(at.corners, at.called, rises && !is_rounded, rapid && !at.is_cycle);
+    at.follows = {};
+    if (off_by_axes + at.corners.by_axes_of_cuts == 0.0) {
+        const bool leaves = rises && !is_rounded, is_single = rapid && !at.is_cycle;
+        const bool may_cut = leaves || (at.tool && turns_to_cut(at.spindle, *at.tool));
+        at.follows = {may_cut && follows_cuts(at.corners, at.called, leaves, is_single),
+                      first_own_cut(at.corners, at.called, leaves, is_single),
+                      leaves ? std::max(at.off_motion, at.corners.of_cuts) : at.off_motion};
+    }
     note_corner(at.corners, motion, path);
     for (const core::Leg& leg : path.legs) {
         if (auto done = update_models(at); !done) return done;
@@ -345,7 +350,7 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
 
 Result<void> CoprocessorCheck::query_each_tool(const std::vector<core::Leg>& legs, At& at,
                                                PushedBlock& block) {
-    at.follows = false;
+    at.follows = {};
     for (const auto& [number, held] : setup_->tools) {
         if (held.reach_is_assumed) continue;
         at.tool = &held;
@@ -422,7 +427,7 @@ Result<void> CoprocessorCheck::query_corner(const core::CornerPlan& plan, bool b
     const double off_motion =
         std::exchange(at.off_motion, core::axis_tolerance_error(*setup_, at.tool, {.legs = legs})
                                          + (is_on_path ? plan.deviation : 0.0));
-    at.follows = false;
+    at.follows = {};
     at.at_corner = true;
     for (const core::Leg& leg : legs)
         if (auto walked = walk(leg, plan.may_cut, at, block); !walked) return walked;
@@ -541,10 +546,15 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
     const core::Allowance allowance = allowance_of(*setup_, pair);
     const double off = path_deviation(pair, at.off_motion, at.corners);
     // Bodies may touch if they can deviate from the path by no more than the contact tolerance.
+    const auto follows = [&] {
+        if (fixture || !at.tool || !fits_own_cut(*at.tool, body.kind)) return false;
+        if (body.kind == core::PartKind::flutes) return at.follows.flutes;
+        return at.follows.first_cut
+               && stays_in_own_cut(*setup_, *at.tool, body, leg, at.stock, at.follows.sideways,
+                                   *at.follows.first_cut);
+    };
     const bool may_touch =
-        allowance.distance <= core::resolution
-        && (off <= contact_depth(allowance)
-            || (!fixture && at.follows && at.tool && core::fits_own_cut(*at.tool, body.kind)));
+        allowance.distance <= core::resolution && (off <= contact_depth(allowance) || follows());
     const core::RelativeLeg way = leg_against(*setup_, fixture, body, leg);
     return {body, pair, way, allowance, off, may_touch};
 }

@@ -118,7 +118,12 @@ private:
         bool tool_known = false;
         std::array<bool, 3> is_assumed{}; // X, Y, Z: not moved yet from an assumed start
         bool is_cycle = false;            // the block has several motions
-        bool follows = true;    // the motion follows the tool's own cut or leaves it upwards
+        /// How the motion follows the tool's own cut, or leaves it upwards.
+        struct Follows {
+            bool flutes = false;
+            std::optional<size_t> first_cut; // that made room for other parts, see first_own_cut
+            double sideways = 0.0;           // of it, mm
+        } follows;
         bool at_corner = false; // legs of a corner are asked about; they cut nothing
     };
     /// A body on the tool side over a leg, and its minimum clearance.

@@ -1,11 +1,18 @@
 #include "core/dbm/covered_path.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
 #include "core/dbm/cut_model.h"
 
 namespace core {
 namespace {
 
 constexpr int deepest_division = 12;
+constexpr double rounding = 1e-6; // mm, of heights and radii
 
 bool same_profile(const RevolvedProfile& a, const RevolvedProfile& b) {
     return std::equal(a.elements.begin(), a.elements.end(), b.elements.begin(), b.elements.end(),
@@ -125,6 +132,191 @@ Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
     return search;
 }
 
+/// The longest range of heights in which a profile has at least this radius.
+std::optional<Interval> heights_of_radius(const RevolvedProfile& profile, double radius) {
+    std::optional<Interval> longest, last;
+    for (const ProfileElement& e : profile.elements) {
+        const double low = e.r0 + e.margin - radius, high = e.r1 + e.margin - radius;
+        if (low < 0.0 && high < 0.0) continue;
+        Interval wide{e.z0, e.z1};
+        const double crossing = low == high ? e.z0 : e.z0 + (e.z1 - e.z0) * low / (low - high);
+        if (low < 0.0) wide.lower = crossing;
+        if (high < 0.0) wide.upper = crossing;
+        if (last && wide.lower <= last->upper + rounding)
+            last->upper = std::max(last->upper, wide.upper);
+        else
+            last = wide;
+        if (!longest || last->upper - last->lower >= longest->upper - longest->lower)
+            longest = last;
+    }
+    return longest;
+}
+
+/// Where the axis of a part need not be covered any more: sets of pairs of a fraction of the path
+/// and a height above the tip. All these sets are convex.
+///
+/// `entry`: the path, moved beside the part's axis into the box of the stock where it is outside.
+/// The part there contains all of the part on the path that is in the box: no point of a box is
+/// farther from the point of it that is next to another one than from that. So only this has to be
+/// covered by cuts, and these are not logged farther out.
+class Covers {
+public:
+    Covers(const CutModel& stock, const PartPathQuery& question, const std::array<Vec3, 2>& entry)
+        : question_(question), entry_(entry) {
+        const Aabb part = bounds(question.part);
+        heights_ = {part.min.z, part.max.z};
+        const double radius = part.max.x;
+        const Vec3 up = question.orientation[2];
+        for (int axis = 0; axis < 3; ++axis) {
+            const double across = std::sqrt(std::max(0.0, 1.0 - up[axis] * up[axis]));
+            clear_[axis] = (radius + question.sideways) * across;
+        }
+        box_ = stock.outer_box;
+        add_moves(stock, radius - rounding);
+    }
+
+    /// Whether all of the part's axis is covered on the whole path.
+    bool everything() {
+        std::vector<size_t> sets(6 + moves_.size());
+        std::iota(sets.begin(), sets.end(), size_t(0));
+        return cell({0.0, 1.0}, heights_, sets);
+    }
+
+private:
+    struct Move {
+        Vec3 start, path, up; // of the part, in the frame of the cutter where it starts
+        Vec3 by;              // of the cutter
+        Interval heights;     // in which it is wide enough
+        Aabb axis;            // a box around its axis at these heights, in the stock's frame
+    };
+
+    void add_moves(const CutModel& stock, double radius) {
+        constexpr double parallel = 0.02; // radians
+        const Vec3 up = question_.orientation[2];
+        const auto numbers = tips_near(stock, tips_around());
+        for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) {
+            if (*number < question_.first_move) break;
+            const CutterSweep& sweep = stock.log[*number].sweep;
+            if (glm::dot(sweep.orientation[2], up) < 1.0 - 0.5 * parallel * parallel) continue;
+            auto heights = heights_of_radius(sweep.cutter->cutting, radius);
+            if (!heights) continue;
+            *heights = {heights->lower - rounding, heights->upper + rounding};
+            const Mat3 inverse = glm::transpose(sweep.orientation);
+            Aabb axis;
+            for (const Vec3& tip : {sweep.from, sweep.to})
+                for (const double height : {heights->lower, heights->upper})
+                    axis.extend(tip + height * sweep.orientation[2]);
+            moves_.push_back({.start = inverse * (entry_[0] - sweep.from),
+                              .path = inverse * (entry_[1] - entry_[0]),
+                              .up = inverse * up,
+                              .by = inverse * (sweep.to - sweep.from),
+                              .heights = *heights,
+                              .axis = axis});
+        }
+    }
+
+    /// A box around the tips of all cutters that may cover the part.
+    Aabb tips_around() const {
+        const Vec3 up = question_.orientation[2];
+        const double reach = bounds(question_.flutes).max.z;
+        Aabb box;
+        for (const Vec3& tip : entry_) {
+            box.extend(tip + heights_.upper * up);
+            box.extend(tip + (heights_.lower - reach) * up);
+        }
+        return box.grown(question_.sideways);
+    }
+
+    Vec3 on_axis(const Vec3& from, const Vec3& to, double t, double h) const {
+        return from + t * (to - from) + h * question_.orientation[2];
+    }
+
+    /// Whether a set contains a point; the first six are the sides of the box.
+    bool contains(size_t set, double t, double h) const {
+        if (set < 6) {
+            const int axis = static_cast<int>(set / 2);
+            const double at = on_axis(question_.from, question_.to, t, h)[axis];
+            return set % 2 == 0 ? at + clear_[axis] <= box_.min[axis]
+                                : at - clear_[axis] >= box_.max[axis];
+        }
+        const Move& move = moves_[set - 6];
+        const Vec3 p = move.start + t * move.path + h * move.up;
+        double first = 0.0, last = 1.0;
+        const double low = p.z - move.heights.upper, high = p.z - move.heights.lower;
+        if (move.by.z > 0.0) {
+            first = std::max(first, low / move.by.z);
+            last = std::min(last, high / move.by.z);
+        } else if (move.by.z < 0.0) {
+            first = std::max(first, high / move.by.z);
+            last = std::min(last, low / move.by.z);
+        } else if (low > 0.0 || high < 0.0) {
+            return false;
+        }
+        if (first > last) return false;
+        const double length = move.by.x * move.by.x + move.by.y * move.by.y;
+        const double along = p.x * move.by.x + p.y * move.by.y;
+        const double s = length > 0.0 ? std::clamp(along / length, first, last) : first;
+        const double x = p.x - s * move.by.x, y = p.y - s * move.by.y;
+        return x * x + y * y <= question_.sideways * question_.sideways;
+    }
+
+    /// Whether a part of path and heights is covered: by one set with all four corners, which as
+    /// it is convex contains everything between; or in halves. `sets`: those that may be near.
+    bool cell(const Interval& path, const Interval& heights, const std::vector<size_t>& sets) {
+        // Corners as bits: where the path starts and ends, below and above.
+        constexpr unsigned start = 0b0101, end = 0b1010, below = 0b0011, above = 0b1100, all = 15;
+        Aabb here;
+        for (const double t : {path.lower, path.upper})
+            for (const double h : {heights.lower, heights.upper})
+                here.extend(on_axis(entry_[0], entry_[1], t, h));
+        here = here.grown(question_.sideways);
+        std::vector<size_t> near;
+        unsigned any = 0;
+        bool has_start = false, has_end = false, has_below = false, has_above = false;
+        for (const size_t set : sets) {
+            if (set >= 6 && !overlaps(moves_[set - 6].axis, here)) continue;
+            if (++tests_ > most_tests) return false;
+            near.push_back(set);
+            unsigned in = 0;
+            for (unsigned corner = 0; corner < 4; ++corner)
+                if (contains(set, corner & 1 ? path.upper : path.lower,
+                             corner & 2 ? heights.upper : heights.lower))
+                    in |= 1U << corner;
+            if (in == all) return true;
+            any |= in;
+            has_start = has_start || (in & start) == start;
+            has_end = has_end || (in & end) == end;
+            has_below = has_below || (in & below) == below;
+            has_above = has_above || (in & above) == above;
+        }
+        if (any != all) return false;
+        const double width = path.length() * glm::length(question_.to - question_.from);
+        const double height = heights.length();
+        const bool is_narrow = width <= question_.sideways, is_low = height <= question_.sideways;
+        // Two sides are each covered by one set: what may be between them is narrow.
+        const bool has_ends = has_start && has_end, has_edges = has_below && has_above;
+        if ((has_ends && is_narrow) || (has_edges && is_low) || (is_narrow && is_low)) return true;
+        if (has_ends != has_edges ? has_ends : width > height) {
+            const double middle = 0.5 * (path.lower + path.upper);
+            return cell({path.lower, middle}, heights, near)
+                   && cell({middle, path.upper}, heights, near);
+        }
+        const double middle = 0.5 * (heights.lower + heights.upper);
+        return cell(path, {heights.lower, middle}, near)
+               && cell(path, {middle, heights.upper}, near);
+    }
+
+    static constexpr size_t most_tests = 100'000;
+
+    const PartPathQuery& question_;
+    std::array<Vec3, 2> entry_;
+    Interval heights_;
+    Aabb box_;
+    Vec3 clear_ = Vec3(0.0); // of the axis from each side of the box
+    std::vector<Move> moves_;
+    size_t tests_ = 0;
+};
+
 bool is_covered(const Search& search, const PathQuery& question) {
     const Mat3 tool_from_stock = glm::transpose(question.orientation);
     return search.covered(tool_from_stock * question.from, tool_from_stock * question.to, 0);
@@ -152,6 +344,33 @@ bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& ques
     for (uint32_t number = 0; number < log.size(); ++number)
         if (overlaps(log.path_box(number), path)) numbers.push_back(number);
     return is_covered(search_among(log, numbers, question, top_along(box, up)), question);
+}
+
+bool stays_in_own_cut(const CutModel& stock, const PartPathQuery& question) {
+    if (question.sideways <= 0.0) return false;
+    const Vec3 &from = question.from, by = question.to - from;
+    if (!is_upright(question.orientation))
+        return Covers(stock, question, {from, from + by}).everything();
+    // Parts of the path, each on one side of each side of the box.
+    const Aabb& box = stock.outer_box;
+    std::vector<double> ends{0.0, 1.0};
+    for (const int axis : {0, 1})
+        for (const double side : {box.min[axis], box.max[axis]})
+            if (const double t = (side - from[axis]) / by[axis]; t > 0.0 && t < 1.0)
+                ends.push_back(t);
+    std::sort(ends.begin(), ends.end());
+    const auto into_box = [&](const Vec3& tip) {
+        return Vec3(std::clamp(tip.x, box.min.x, box.max.x),
+                    std::clamp(tip.y, box.min.y, box.max.y), tip.z);
+    };
+    for (size_t i = 0; i + 1 < ends.size(); ++i) {
+        PartPathQuery part = question;
+        part.from = from + ends[i] * by;
+        part.to = from + ends[i + 1] * by;
+        if (!Covers(stock, part, {into_box(part.from), into_box(part.to)}).everything())
+            return false;
+    }
+    return true;
 }
 
 } // namespace core

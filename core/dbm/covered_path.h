@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/base/vec.h"
 
 namespace core {
@@ -33,5 +35,26 @@ bool runs_in_own_cut(const CutModel& stock, const PathQuery& question);
 /// Overload for another body cut by the flutes: `box` contains the body, `log` the moves that cut
 /// it.
 bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& question);
+
+/// A straight move of a part of a tool that is compared with earlier cuts.
+struct PartPathQuery {
+    const RevolvedProfile& part;           // its heights count from the tip
+    const RevolvedProfile& flutes;         // of the same tool
+    Vec3 from = Vec3(0.0), to = Vec3(0.0); // positions of the tip
+    double sideways = 0.0;                 // allowed distance of its axis from that of a cutter
+    Mat3 orientation = Mat3(1.0);          // stock_from_tool
+    uint32_t first_move = 0;               // number of the first move in the log that counts
+};
+
+/// Whether a part of a tool stays where cutters at least as wide have been: beside each point of
+/// its axis, at most `sideways` away, the axis of such a cutter has passed while that cut at this
+/// height. Where the part stays more than `sideways` beside the box of the stock, this is not
+/// needed; where its axis is outside of it, the nearest place in it counts. Cutters must be
+/// parallel to the part within 0.02 radians.
+///
+/// Result:  if true, gaps between two cuts are at most `sideways` wide. False proves nothing.
+/// Cost:    the number of logged moves near the path times the number of parts into which path
+///          and heights are divided.
+bool stays_in_own_cut(const CutModel& stock, const PartPathQuery& question);
 
 } // namespace core

@@ -296,6 +296,16 @@ bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>
     return corners.has_cut && (rises || (!is_rapid && corners.by == corners.mode_of_cuts));
 }
 
+std::optional<size_t> first_own_cut(const RoundedCorners& corners,
+                                    const std::optional<ToolNumber>& tool, bool rises,
+                                    bool is_rapid) {
+    const OwnCuts& own = corners.own;
+    if (!corners.has_cut || own.tool != tool) return {};
+    if (rises) return own.since_tool;
+    if (is_rapid || own.by != corners.by) return {};
+    return own.since_mode;
+}
+
 bool fits_own_cut(const ToolAssembly& tool, PartKind part) {
     const auto radius_of = [&](PartKind kind) {
         double radius = 0.0;
@@ -304,6 +314,14 @@ bool fits_own_cut(const ToolAssembly& tool, PartKind part) {
         return radius;
     };
     return is_below_holder(part) && radius_of(part) <= radius_of(PartKind::flutes) + resolution;
+}
+
+bool depends_on_own_cut(const PairClearance& pair, const BlockDeviation& of,
+                        const RoundedCorners& corners) {
+    const double off = path_deviation(pair.pair, of.of_feeds + of.by_axes, corners);
+    return !pair.pair.fixture && pair.verdict == Verdict::clear
+           && pair.allowance.distance <= resolution && off > contact_depth(pair.allowance)
+           && pair.lower <= off;
 }
 
 void widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners,

@@ -145,6 +145,14 @@ struct CornerStart {
     std::vector<Leg> legs_with_joined() const;
 };
 
+/// Which moves in the log of the stock are those of the tool that has cut last.
+struct OwnCuts {
+    std::optional<ToolNumber> tool;
+    double by = 0.0;       // how far feeds deviated when it cut last, mm
+    size_t since_tool = 0; // number of its first move
+    size_t since_mode = 0; // of its first one since feeds deviate as far as that
+};
+
 /// How far the tool may deviate from its programmed path because the control rounds corners, mm.
 ///
 /// Where feeds are rounded depends on the next motion, on speeds and on short moves that the
@@ -173,6 +181,7 @@ struct RoundedCorners {
     bool by_several = false;        // more than one tool has
     double by_axes_of_cuts = 0.0;   // likewise of them by the tolerances of axes of rotation
     bool has_cut = false;           // a feed has met the stock
+    OwnCuts own;                    // of the tool that has cut last
 
     /// Arcs this close to two lines may be run as lines, mm.
     double arcs_as_lines() const { return arcs.blends() ? joining : 0.0; }
@@ -186,8 +195,12 @@ struct RoundedCorners {
     /// Records the end of a motion, without its legs.
     void end(MotionKind kind, bool is_arc);
 
-    /// Records a cutting feed.
-    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc) {
+    /// Records a cutting feed, before which the stock's log has `logged` moves.
+    void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc, size_t logged) {
+        if (own.tool != by_tool) own.since_tool = logged;
+        if (own.tool != by_tool || own.by != by) own.since_mode = logged;
+        own.tool = by_tool;
+        own.by = by;
         if (of_feed(is_arc) == 0.0) return;
         by_several = by_several || (tool && tool != by_tool);
         tool = by_tool;
@@ -222,20 +235,31 @@ double path_deviation(const Pair& pair, double of_block, const RoundedCorners& c
 /// Whether a leg is straight and moves only upwards, or not at all.
 bool rises(const Leg& leg);
 
-/// Whether a motion stays within what its tool has cut, however corners were rounded: it has cut,
-/// and deviates as its cuts did, or all of its legs go upwards out of them (`rises`).
+/// Whether flutes stay within what they have cut, however corners were rounded: the tool has cut,
+/// and deviates as its cuts did, or all legs of the motion go upwards out of them (`rises`).
 bool follows_cuts(const RoundedCorners& corners, const std::optional<ToolNumber>& tool, bool rises,
                   bool is_rapid);
+
+/// The number of the first move in the stock's log that makes room for other parts of the tool on a
+/// motion, see stays_in_own_cut: it deviates as that and all later ones did, or goes upwards out of
+/// what this tool has cut. Empty if no move does.
+std::optional<size_t> first_own_cut(const RoundedCorners& corners,
+                                    const std::optional<ToolNumber>& tool, bool rises,
+                                    bool is_rapid);
 
 /// Whether a part of a tool may have been given its room by the flutes, on the same path: it is no
 /// wider than they are. Other parts follow no cut.
 bool fits_own_cut(const ToolAssembly& tool, PartKind part);
 
+/// Whether `widen` asks for `follows_cuts`.
+bool depends_on_own_cut(const PairClearance& pair, const BlockDeviation& of,
+                        const RoundedCorners& corners);
+
 /// Widens the bounds of a pair by the possible deviation between its bodies.
 ///
-/// For a pair with the stock that may touch, the verdict is kept if `follows_cuts` says that the
-/// same tool deviates as its cuts did or leaves them upwards: it moves where it has cut. Otherwise
-/// it is kept if the material that may be left at a corner is less than the contact depth.
+/// For a pair with the stock that may touch, the verdict is kept if `follows_cuts`: the body moves
+/// where its tool has cut, and deviates as that did. Otherwise it is kept if the material that may
+/// be left at a corner is less than the contact depth.
 ///
 /// Tolerances of axes displace the tool and its cuts differently, and not the raw stock: what they
 /// may press in is never clear.

@@ -1,6 +1,7 @@
 #include "core/sim/moving_body.h"
 
 #include "core/base/math.h"
+#include "core/dbm/covered_path.h"
 #include "core/distance/shape_outline.h"
 #include "core/motion/machine.h"
 #include "core/motion/path.h"
@@ -116,6 +117,28 @@ RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const
     for (double* error : {&relative.error, &relative.lasting_error, &relative.deviation})
         *error += target.deviation;
     return relative;
+}
+
+bool stays_in_own_cut(const Setup& setup, const ToolAssembly& tool, const MovingBody& part,
+                      const Leg& leg, const CutModel& stock, double sideways, size_t first_move) {
+    constexpr double parallel = 0.02; // radians
+    if (!part.profile || !leg.straight) return false;
+    const double turn = turn_of(setup.machine, leg.positions.front(), leg.positions.back());
+    const int parts = std::max(1, static_cast<int>(std::ceil(turn / parallel)));
+    for (int i = 0; i < parts; ++i) {
+        const Leg stretched =
+            parts == 1 ? leg : stretch(leg, double(i) / parts, double(i + 1) / parts);
+        const RelativeLeg way = leg_against(setup, {}, part, stretched);
+        if (!core::stays_in_own_cut(stock, {.part = *part.profile,
+                                            .flutes = tool.parts[0].profile,
+                                            .from = way.positions.front(),
+                                            .to = way.positions.back(),
+                                            .sideways = sideways,
+                                            .orientation = way.orientation,
+                                            .first_move = static_cast<uint32_t>(first_move)}))
+            return false;
+    }
+    return true;
 }
 
 bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture) {

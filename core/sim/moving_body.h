@@ -10,6 +10,7 @@
 
 namespace core {
 
+struct CutModel;
 struct Fixture;
 struct Path;
 struct Setup;
@@ -67,6 +68,11 @@ double axis_tolerance_error(const Setup& setup, const ToolAssembly* tool, const 
 /// counts as an error of the leg; that of the stock is in its tolerance.
 RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const MovingBody& body,
                         const Leg& leg);
+
+/// Whether a part of a tool stays on a leg where its flutes have cut, within `sideways`, since move
+/// `first_move` of the stock's log: see the function of the same name in core/dbm/covered_path.h.
+bool stays_in_own_cut(const Setup& setup, const ToolAssembly& tool, const MovingBody& part,
+                      const Leg& leg, const CutModel& stock, double sideways, size_t first_move);
 
 /// Whether two bodies are never checked against each other: they are fixed to each other, or are
 /// machine bodies on neighbouring links.

@@ -98,5 +98,104 @@ TEST(OwnCut, HoldsTheWayBackOfAnyFlutes) {
     }
 }
 
+/// A shank as wide as the flutes of 20 mm, and one that is 1 mm slimmer.
+const RevolvedProfile shank{{{20.0, 5.0, 60.0, 5.0, 0.0}}};
+const RevolvedProfile neck{{{20.0, 4.0, 60.0, 4.0, 0.0}}};
+
+/// A block of 100 x 100 x 60 with its top at Z 0, cut along levels at Y50.
+struct DeepSlot {
+    CutModel stock = *make_cut_model({SolidBox{{{0, 0, -60}, {100, 100, 0}}}, 0.0}, 1.0);
+    std::shared_ptr<const Cutter> cutter =
+        std::make_shared<const Cutter>(make_cutter(end_mill, 0.0));
+
+    void mill(const Vec3& from, const Vec3& to, const Mat3& orientation = Mat3(1.0)) {
+        cut(stock, {.cutter = cutter, .from = from, .to = to, .orientation = orientation});
+    }
+    bool holds(const Vec3& from, const Vec3& to, const RevolvedProfile& part = shank,
+               uint32_t first_move = 0, double sideways = 0.2) const {
+        return stays_in_own_cut(stock, {part, end_mill, from, to, sideways, Mat3(1.0), first_move});
+    }
+};
+
+TEST(OwnCutOfAPart, HoldsBelowLevelsThatAreOpenAtTheSide) {
+    DeepSlot slot;
+    for (const double z : {-15.0, -30.0, -45.0}) slot.mill({-10, 50, z}, {110, 50, z});
+    EXPECT_TRUE(slot.holds({-10, 50, -45}, {110, 50, -45}));
+    EXPECT_TRUE(slot.holds({110, 50.1, -45}, {30, 49.9, -45}, neck));
+    EXPECT_FALSE(slot.holds({-10, 50.3, -45}, {110, 50.3, -45}));
+    EXPECT_FALSE(slot.holds({-10, 50, -45}, {110, 50, -45}, shank, 1)); // without the first level
+}
+
+/// A level may be made of many pieces that are not those of the next one. Those that meet nothing
+/// are not logged.
+TEST(OwnCutOfAPart, HoldsBelowLevelsInPieces) {
+    for (const double step : {0.1, 4.0}) {
+        DeepSlot slot;
+        for (int k = 0; k * step < 120.0; ++k)
+            slot.mill({-10 + step * k, 50, -20}, {-10 + step * (k + 1), 50, -20});
+        EXPECT_TRUE(slot.holds({-10, 50, -40}, {110, 50, -40})) << step;
+        EXPECT_TRUE(slot.holds({90, 50, -40}, {90, 50, -30})) << step;
+        EXPECT_FALSE(slot.holds({-10, 50, -40}, {130, 60, -40})) << step;
+        EXPECT_FALSE(slot.holds({-5.1, 20, -40}, {-5.1, 80, -40})) << step << ": beside the face";
+    }
+}
+
+TEST(OwnCutOfAPart, HoldsWhereTheToolPlungesAndRises) {
+    DeepSlot slot;
+    slot.mill({50, 50, 10}, {50, 50, -50});
+    EXPECT_TRUE(slot.holds({50, 50, 10}, {50, 50, -50}));
+    EXPECT_TRUE(slot.holds({50, 50, -50}, {50, 50, 80}));
+    EXPECT_FALSE(slot.holds({50, 50, -50}, {51, 50, -50}));
+}
+
+/// Flutes below an overhang: the shank stands beside material that no flutes have touched.
+TEST(OwnCutOfAPart, EndsBesideRawStock) {
+    DeepSlot slot;
+    slot.mill({50, -6, -50}, {50, -1, -50});
+    slot.mill({50, -1, -50}, {90, -1, -50});
+    EXPECT_FALSE(slot.holds({50, -1, -50}, {90, -1, -50}));
+    EXPECT_FALSE(slot.holds({50, -4.1, -50}, {90, -4.1, -50}, neck));
+    EXPECT_TRUE(slot.holds({50, -4.21, -50}, {90, -4.21, -50}, neck)); // too far from it
+    EXPECT_FALSE(slot.holds({50, -3.9, -50}, {90, -4.3, -50}, neck));
+}
+
+/// Between two levels that do not meet, material is left.
+TEST(OwnCutOfAPart, EndsWhereHeightsWereLeftOut) {
+    DeepSlot slot;
+    slot.mill({-10, 50, -15}, {110, 50, -15});
+    slot.mill({-10, 50, -37}, {110, 50, -37});
+    EXPECT_FALSE(slot.holds({0, 50, -50}, {110, 50, -50}));
+    slot.mill({-10, 50, -35}, {110, 50, -35});
+    EXPECT_TRUE(slot.holds({0, 50, -50}, {110, 50, -50}));
+}
+
+/// A ball does not make room for a shank at the heights of its lower half.
+TEST(OwnCutOfAPart, NeedsFlutesThatAreWideEnough) {
+    const RevolvedProfile ball{{{5.0, 0.0, 5.0, 0.0, 5.0}, {5.0, 5.0, 20.0, 5.0, 0.0}}};
+    DeepSlot slot;
+    slot.cutter = std::make_shared<const Cutter>(make_cutter(ball, 0.0));
+    slot.mill({-10, 50, -20}, {110, 50, -20});
+    EXPECT_FALSE(slot.holds({0, 50, -40}, {110, 50, -40}));
+    slot.mill({-10, 50, -30}, {110, 50, -30});
+    EXPECT_TRUE(slot.holds({0, 50, -40}, {110, 50, -40}));
+}
+
+TEST(OwnCutOfAPart, HoldsForTiltedTools) {
+    const double angle = 0.4;
+    const Mat3 tilted(Vec3(std::cos(angle), 0, -std::sin(angle)), Vec3(0, 1, 0),
+                      Vec3(std::sin(angle), 0, std::cos(angle)));
+    DeepSlot slot;
+    const auto at = [&](double x, double along) { return Vec3(x, 50, 0) + along * tilted[2]; };
+    for (const double along : {-15.0, -30.0, -45.0})
+        slot.mill(at(60, along), at(90, along), tilted);
+    const auto holds = [&](double from, double to, const Mat3& orientation) {
+        return stays_in_own_cut(slot.stock,
+                                {shank, end_mill, at(from, -45), at(to, -45), 0.2, orientation});
+    };
+    EXPECT_TRUE(holds(61, 89, tilted));
+    EXPECT_FALSE(holds(61, 91, tilted));
+    EXPECT_FALSE(holds(61, 89, Mat3(1.0)));
+}
+
 } // namespace
 } // namespace core

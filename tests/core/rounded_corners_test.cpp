@@ -460,6 +460,94 @@ TEST(RoundedCorners, LeaveNoDoubtAtTheFaceOfTheRawStock) {
     EXPECT_EQ(corner.go(MotionKind::rapid, {60, 28, -1}), Verdict::collision);
 }
 
+/// A block of 100 x 100 x 60 with its top at Z 0, and two tools of 10 mm with flutes of 20 mm and
+/// shanks of this diameter.
+Corner with_deep_stock(double shank, double tolerance) {
+    core::Setup setup;
+    setup.stock = {SolidBox{{{0, 0, -60}, {100, 100, 0}}}, 0.0};
+    for (const int number : {1, 2}) {
+        ToolDescription tool;
+        tool.number = ToolNumber{number};
+        tool.diameter = 10.0;
+        tool.flute_length = 20.0;
+        tool.shank_diameter = shank;
+        tool.stick_out = 80.0;
+        setup.tools.emplace(tool.number, *assemble(tool));
+    }
+    Corner corner(std::move(setup));
+    corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}, within(tolerance)});
+    return corner;
+}
+
+/// The verdicts of a feed at each height along X at Y50 through the whole block; worst.
+Verdict mill_slot(Corner& corner, const std::vector<double>& heights) {
+    Verdict worst = Verdict::clear;
+    for (const double z : heights) {
+        corner.go(MotionKind::rapid, {-20, 50, 10});
+        corner.go(MotionKind::rapid, {-20, 50, z});
+        worst = std::max(worst, corner.go(MotionKind::feed, {60, 50, z}));
+        worst = std::max(worst, corner.go(MotionKind::feed, {110, 50, z}));
+        worst = std::max(worst, corner.go(MotionKind::rapid, {110, 50, 10}));
+    }
+    return worst;
+}
+
+TEST(RoundedCorners, LeaveNoDoubtWhereTheShankFollowsItsFlutes) {
+    for (const double shank : {10.0, 9.8}) {
+        Corner corner = with_deep_stock(shank, 0.3);
+        EXPECT_EQ(mill_slot(corner, {-15, -30, -45}), Verdict::clear);
+        // Out of it in the middle, and at another place straight down and up.
+        corner.go(MotionKind::rapid, {-20, 50, -45});
+        corner.go(MotionKind::feed, {50, 50, -45});
+        EXPECT_EQ(corner.go(MotionKind::rapid, {50, 50, 10}), Verdict::clear);
+        corner.go(MotionKind::rapid, {50, 20, 10});
+        EXPECT_EQ(corner.go(MotionKind::feed, {50, 20, -50}), Verdict::clear);
+        EXPECT_EQ(corner.go(MotionKind::rapid, {50, 20, 10}), Verdict::clear);
+        // Another tool makes room for its own shank only.
+        corner.give({ToolChange{ToolNumber{2}}});
+        corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}});
+        corner.go(MotionKind::rapid, {50, 80, 10});
+        EXPECT_EQ(corner.go(MotionKind::feed, {50, 80, -50}), Verdict::clear);
+        EXPECT_EQ(corner.go(MotionKind::rapid, {50, 80, 10}), Verdict::clear);
+        EXPECT_EQ(mill_slot(corner, {-45}), Verdict::undecided);
+    }
+}
+
+TEST(RoundedCorners, LeaveDoubtWhereTheShankPassesStockThatItsFlutesHaveNotTouched) {
+    for (const double shank : {10.0, 8.0})
+        for (const double tolerance : {0.05, 0.3}) {
+            Corner corner = with_deep_stock(shank, tolerance);
+            EXPECT_EQ(mill_slot(corner, {-15}), Verdict::clear);
+            const double y = -0.5 * shank - 0.1; // 0.1 mm from the side of the block
+            corner.go(MotionKind::rapid, {20, -20, 10});
+            corner.go(MotionKind::rapid, {20, -20, -50});
+            corner.go(MotionKind::feed, {20, y, -50});
+            EXPECT_EQ(corner.go(MotionKind::feed, {80, y, -50}),
+                      tolerance > 0.1 ? Verdict::undecided : Verdict::clear);
+        }
+}
+
+TEST(RoundedCorners, LeaveDoubtWhereTheFlutesDeviatedLessThanTheShankDoes) {
+    Corner corner = with_deep_stock(10.0, 0.3);
+    corner.give({PathModeChange{Blending::exact_stop, {}}});
+    EXPECT_EQ(mill_slot(corner, {-15}), Verdict::clear);
+    corner.give({within(0.3)});
+    EXPECT_EQ(mill_slot(corner, {-30}), Verdict::undecided);
+    // The upper level once more: now both deviate alike.
+    mill_slot(corner, {-15});
+    EXPECT_EQ(mill_slot(corner, {-30}), Verdict::clear);
+}
+
+TEST(RoundedCorners, LeaveDoubtWhereFlutesThatDoNotTurnPassTheStock) {
+    Corner corner = with_deep_stock(10.0, 0.3);
+    EXPECT_EQ(mill_slot(corner, {-15}), Verdict::clear);
+    corner.give({SpindleChange{SpindleDirection::stopped, 0.0}});
+    corner.go(MotionKind::rapid, {20, -20, 10});
+    corner.go(MotionKind::rapid, {20, -5.1, 10});
+    corner.go(MotionKind::rapid, {20, -5.1, -15});
+    EXPECT_EQ(corner.go(MotionKind::feed, {80, -5.1, -15}), Verdict::undecided);
+}
+
 TEST(RoundedCorners, LeaveACrashACrash) {
     Corner corner(around_a_corner(-2.0, true));
     corner.give({within(0.05)});

@@ -318,25 +318,37 @@ bool BlockRun::touches_no_doubtful_stock(const PairClearance& pair) {
     });
 }
 
+bool BlockRun::follows_own_cut(const PairClearance& pair, bool rises) {
+    if (!tool()) return false;
+    const bool is_rapid = result.motion == BlockMotion::rapid;
+    if (pair.pair.part == PartKind::flutes) {
+        const bool may_cut = rises || std::any_of(legs.begin(), legs.end(), [](const auto& timed) {
+                                 return timed.use == FluteUse::cutting;
+                             });
+        return may_cut && follows_cuts(state.corners, state.tool, rises, is_rapid);
+    }
+    const auto first = first_own_cut(state.corners, state.tool, rises, is_rapid);
+    if (!first || !fits_own_cut(*tool(), pair.pair.part)) return false;
+    const double sideways = rises ? std::max(off_path, state.corners.of_cuts) : off_path;
+    const LegCheck check = leg_check(FluteUse::not_cutting);
+    return std::all_of(legs.begin(), legs.end(), [&](const TimedLeg& timed) {
+        return check.stays_in_own_cut(pair.pair, timed.leg, state.stock, sideways, *first);
+    });
+}
+
 void BlockRun::conclude() {
     pairs.sort();
     const bool rise = std::all_of(legs.begin(), legs.end(),
                                   [](const TimedLeg& timed) { return rises(timed.leg); });
-    const bool follows =
-        follows_cuts(state.corners, state.tool, rise, result.motion == BlockMotion::rapid);
     const BlockDeviation of{off_path, off_path_rapids, off_by_axes};
-    const bool deviates =
-        tool()
-        && std::max({off_path, off_path_rapids, off_by_axes, state.corners.of_stock()}) > 0.0;
     std::vector<double> on_the_way; // distance of each pair on the programmed path
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
-        const bool is_doubtful =
-            pair.verdict == Verdict::clear && state.corners.of_stock() + off_by_axes > 0.0;
-        const bool follows_it = follows && deviates && fits_own_cut(*tool(), pair.pair.part);
-        const bool is_kept = follows_it && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
-        widen(pair, of, state.corners, follows_it,
-              is_doubtful && !is_kept && touches_no_doubtful_stock(pair));
+        const bool may_follow = depends_on_own_cut(pair, of, state.corners);
+        const bool follows = may_follow && follows_own_cut(pair, rise);
+        const bool is_kept = follows && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
+        widen(pair, of, state.corners, follows,
+              may_follow && !is_kept && touches_no_doubtful_stock(pair));
         widen_by_stock(pair, setup.stock.deviation);
     }
     if (const TrackedPair* worst = deciding_pair(pairs)) {

@@ -74,15 +74,15 @@ void BlockRun::round_corners(const Motion& motion, const Path& path) {
     const double by = corners.of_feed(motion.arc.has_value());
     if (!tool()) return;
     const bool cuts = use(motion) == FluteUse::cutting;
-    if (cuts) corners.by_axes_of_cuts = std::max(corners.by_axes_of_cuts, off_by_axes);
+    if (cuts) {
+        corners.by_axes_of_cuts = std::max(corners.by_axes_of_cuts, off_by_axes);
+        corners.note_cut(state.tool, motion.arc.has_value(), state.stock.log.size());
+    }
     if (by == 0.0) return;
     off_path = std::max(off_path, by);
-    if (cuts) {
-        corners.note_cut(state.tool, motion.arc.has_value());
-        if (corners.arcs.rounds() && !motion.tip && moves_other_axes(path.legs))
-            corners.of_cuts =
-                std::max(corners.of_cuts, by + off_by_turn(setup, tool(), path.legs, smooth_turn));
-    }
+    if (cuts && corners.arcs.rounds() && !motion.tip && moves_other_axes(path.legs))
+        corners.of_cuts =
+            std::max(corners.of_cuts, by + off_by_turn(setup, tool(), path.legs, smooth_turn));
     const double own = motion.arc ? corners.by_arc : corners.by;
     if (own > 0.0)
         state.assumptions.insert(fmt::format(
