@@ -132,9 +132,9 @@ Search search_among(const SweepLog& log, const std::vector<uint32_t>& numbers,
     return search;
 }
 
-/// The longest range of heights in which a profile has at least this radius.
+/// The heights in which the hull of a profile's elements has at least this radius.
 std::optional<Interval> heights_of_radius(const RevolvedProfile& profile, double radius) {
-    std::optional<Interval> longest, last;
+    std::optional<Interval> all;
     for (const ProfileElement& e : profile.elements) {
         const double low = e.r0 + e.margin - radius, high = e.r1 + e.margin - radius;
         if (low < 0.0 && high < 0.0) continue;
@@ -142,14 +142,9 @@ std::optional<Interval> heights_of_radius(const RevolvedProfile& profile, double
         const double crossing = low == high ? e.z0 : e.z0 + (e.z1 - e.z0) * low / (low - high);
         if (low < 0.0) wide.lower = crossing;
         if (high < 0.0) wide.upper = crossing;
-        if (last && wide.lower <= last->upper + rounding)
-            last->upper = std::max(last->upper, wide.upper);
-        else
-            last = wide;
-        if (!longest || last->upper - last->lower >= longest->upper - longest->lower)
-            longest = last;
+        all = all ? Interval{all->lower, wide.upper} : wide;
     }
-    return longest;
+    return all;
 }
 
 /// Where the axis of a part need not be covered any more: sets of pairs of a fraction of the path
@@ -164,7 +159,8 @@ public:
     Covers(const CutModel& stock, const PartPathQuery& question, const std::array<Vec3, 2>& entry)
         : question_(question), entry_(entry) {
         const Aabb part = bounds(question.part);
-        heights_ = {part.min.z, part.max.z};
+        // With a gap, the part may be as long as it is.
+        heights_ = {part.min.z + (question.gap > 0.0 ? 0.0 : question.sideways), part.max.z};
         const double radius = part.max.x;
         const Vec3 up = question.orientation[2];
         for (int axis = 0; axis < 3; ++axis) {
@@ -187,32 +183,39 @@ private:
         Vec3 start, path, up; // of the part, in the frame of the cutter where it starts
         Vec3 by;              // of the cutter
         Interval heights;     // in which it is wide enough
+        double near = 0.0;    // allowed distance from its axis, mm
         Aabb axis;            // a box around its axis at these heights, in the stock's frame
     };
 
     void add_moves(const CutModel& stock, double radius) {
-        constexpr double parallel = 0.02; // radians
+        const double parallel = question_.gap > 0.0 ? 0.02 : 1e-9; // radians
         const Vec3 up = question_.orientation[2];
         const auto numbers = tips_near(stock, tips_around());
         for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) {
             if (*number < question_.first_move) break;
             const CutterSweep& sweep = stock.log[*number].sweep;
-            if (glm::dot(sweep.orientation[2], up) < 1.0 - 0.5 * parallel * parallel) continue;
-            auto heights = heights_of_radius(sweep.cutter->cutting, radius);
-            if (!heights) continue;
-            *heights = {heights->lower - rounding, heights->upper + rounding};
-            const Mat3 inverse = glm::transpose(sweep.orientation);
-            Aabb axis;
-            for (const Vec3& tip : {sweep.from, sweep.to})
-                for (const double height : {heights->lower, heights->upper})
-                    axis.extend(tip + height * sweep.orientation[2]);
-            moves_.push_back({.start = inverse * (entry_[0] - sweep.from),
-                              .path = inverse * (entry_[1] - entry_[0]),
-                              .up = inverse * up,
-                              .by = inverse * (sweep.to - sweep.from),
-                              .heights = *heights,
-                              .axis = axis});
+            if (glm::length(sweep.orientation[2] - up) > parallel) continue;
+            const double error = sweep.cutter->path_error;
+            if (error >= question_.sideways) continue;
+            for (const Cutter::Piece& piece : sweep.cutter->pieces)
+                if (const auto heights = heights_of_radius(piece.within, radius - error))
+                    add_move(sweep, *heights, question_.sideways - error);
         }
+    }
+
+    /// Adds a move of a cutter that is wide enough between two heights.
+    void add_move(const CutterSweep& sweep, const Interval& heights, double near) {
+        const Mat3 inverse = glm::transpose(sweep.orientation);
+        Move move{.start = inverse * (entry_[0] - sweep.from),
+                  .path = inverse * (entry_[1] - entry_[0]),
+                  .up = inverse * question_.orientation[2],
+                  .by = inverse * (sweep.to - sweep.from),
+                  .heights = {heights.lower - rounding, heights.upper + rounding},
+                  .near = near};
+        for (const Vec3& tip : {sweep.from, sweep.to})
+            for (const double height : {heights.lower, heights.upper})
+                move.axis.extend(tip + height * sweep.orientation[2]);
+        moves_.push_back(move);
     }
 
     /// A box around the tips of all cutters that may cover the part.
@@ -257,7 +260,7 @@ private:
         const double along = p.x * move.by.x + p.y * move.by.y;
         const double s = length > 0.0 ? std::clamp(along / length, first, last) : first;
         const double x = p.x - s * move.by.x, y = p.y - s * move.by.y;
-        return x * x + y * y <= question_.sideways * question_.sideways;
+        return x * x + y * y <= move.near * move.near;
     }
 
     /// Whether a part of path and heights is covered: by one set with all four corners, which as
@@ -292,10 +295,12 @@ private:
         if (any != all) return false;
         const double width = path.length() * glm::length(question_.to - question_.from);
         const double height = heights.length();
-        const bool is_narrow = width <= question_.sideways, is_low = height <= question_.sideways;
+        const double gap = std::max(question_.gap, rounding);
+        const bool is_narrow = width <= gap, is_low = height <= gap;
         // Two sides are each covered by one set: what may be between them is narrow.
         const bool has_ends = has_start && has_end, has_edges = has_below && has_above;
-        if ((has_ends && is_narrow) || (has_edges && is_low) || (is_narrow && is_low)) return true;
+        if ((has_ends && is_narrow) || (has_edges && is_low) || (is_narrow && is_low))
+            return question_.gap > 0.0;
         if (has_ends != has_edges ? has_ends : width > height) {
             const double middle = 0.5 * (path.lower + path.upper);
             return cell({path.lower, middle}, heights, near)

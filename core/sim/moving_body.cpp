@@ -135,7 +135,8 @@ bool stays_in_own_cut(const Setup& setup, const ToolAssembly& tool, const Moving
                                             .to = way.positions.back(),
                                             .sideways = sideways,
                                             .orientation = way.orientation,
-                                            .first_move = static_cast<uint32_t>(first_move)}))
+                                            .first_move = static_cast<uint32_t>(first_move),
+                                            .gap = sideways}))
             return false;
     }
     return true;

@@ -1,10 +1,15 @@
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "core/dbm/covered_path.h"
 #include "core/dbm/cut_model.h"
+#include "tests/support/stock_oracle.h"
 
 namespace core {
 namespace {
+
+using test_support::for_cells_at;
 
 const RevolvedProfile end_mill{{{0.0, 5.0, 20.0, 5.0, 0.0}}};
 const RevolvedProfile slimmer{{{0.0, 4.9, 20.0, 4.9, 0.0}}};
@@ -113,7 +118,8 @@ struct DeepSlot {
     }
     bool holds(const Vec3& from, const Vec3& to, const RevolvedProfile& part = shank,
                uint32_t first_move = 0, double sideways = 0.2) const {
-        return stays_in_own_cut(stock, {part, end_mill, from, to, sideways, Mat3(1.0), first_move});
+        return stays_in_own_cut(
+            stock, {part, end_mill, from, to, sideways, Mat3(1.0), first_move, sideways});
     }
 };
 
@@ -124,6 +130,14 @@ TEST(OwnCutOfAPart, HoldsBelowLevelsThatAreOpenAtTheSide) {
     EXPECT_TRUE(slot.holds({110, 50.1, -45}, {30, 49.9, -45}, neck));
     EXPECT_FALSE(slot.holds({-10, 50.3, -45}, {110, 50.3, -45}));
     EXPECT_FALSE(slot.holds({-10, 50, -45}, {110, 50, -45}, shank, 1)); // without the first level
+}
+
+TEST(OwnCutOfAPart, BeginsWithTheSlotUnlessThatIsOpenThere) {
+    for (const double x : {0.0, 3.0}) {
+        DeepSlot slot;
+        for (const double z : {-15.0, -30.0, -45.0}) slot.mill({x, 50, z}, {90, 50, z});
+        EXPECT_EQ(slot.holds({-20, 50, -45}, {90, 50, -45}), x == 0.0);
+    }
 }
 
 /// A level may be made of many pieces that are not those of the next one. Those that meet nothing
@@ -188,13 +202,83 @@ TEST(OwnCutOfAPart, HoldsForTiltedTools) {
     const auto at = [&](double x, double along) { return Vec3(x, 50, 0) + along * tilted[2]; };
     for (const double along : {-15.0, -30.0, -45.0})
         slot.mill(at(60, along), at(90, along), tilted);
-    const auto holds = [&](double from, double to, const Mat3& orientation) {
-        return stays_in_own_cut(slot.stock,
-                                {shank, end_mill, at(from, -45), at(to, -45), 0.2, orientation});
+    const auto holds = [&](double from, double to, const Mat3& orientation, double gap = 0.0) {
+        return stays_in_own_cut(
+            slot.stock, {shank, end_mill, at(from, -45), at(to, -45), 0.2, orientation, 0, gap});
     };
     EXPECT_TRUE(holds(61, 89, tilted));
     EXPECT_FALSE(holds(61, 91, tilted));
     EXPECT_FALSE(holds(61, 89, Mat3(1.0)));
+    const Mat3 nearly = rotation_xyz_deg({0, 0.3, 0}) * tilted;
+    EXPECT_FALSE(holds(75, 75, nearly)) << "nothing is proven";
+    EXPECT_TRUE(holds(75, 75, nearly, 0.2));
+}
+
+TEST(OwnCutOfAPart, IsEmptyWhereItIsProven) {
+    const std::vector<RevolvedProfile> all_flutes{
+        {{{0.0, 5.0, 12.0, 5.0, 0.0}}},
+        {{{5.0, 0.0, 5.0, 0.0, 5.0}, {5.0, 5.0, 12.0, 5.0, 0.0}}},
+        {{{1.5, 3.5, 1.5, 3.5, 1.5}, {1.5, 5.0, 12.0, 5.0, 0.0}}},
+        {{{0.0, 5.0, 12.0, 3.0, 0.0}}},
+        {{{0.0, 2.0, 12.0, 6.0, 0.0}}},
+        {{{0.0, 6.0, 4.0, 6.0, 0.0}, {4.0, 3.0, 12.0, 3.0, 0.0}}}};
+    std::mt19937 rng(20);
+    const auto pick = [&](int most) { return static_cast<int>(rng() % (most + 1)); };
+    const auto part_of = [&](double range) { return range * pick(1'000'000) / 1e6; };
+    const auto tilted_by = [](double angle) {
+        return Mat3(Vec3(std::cos(angle), 0, -std::sin(angle)), Vec3(0, 1, 0),
+                    Vec3(std::sin(angle), 0, std::cos(angle)));
+    };
+    int held = 0;
+    for (int trial = 0; trial < 800; ++trial) {
+        CutModel stock = *make_cut_model({SolidBox{{{0, 0, -40}, {40, 40, 0}}}, 0.0}, 1.0);
+        const RevolvedProfile& flutes = all_flutes[rng() % all_flutes.size()];
+        const double radius = 2.0 + 0.5 * pick(6), error = 0.01 * pick(2);
+        const RevolvedProfile part{{{12.0, radius, 35.0, radius, 0.0}}};
+        const auto cutter = std::make_shared<const Cutter>(make_cutter(flutes, error));
+        const double angle = trial % 3 == 0 ? 0.1 * pick(6) : 0.0;
+        const Mat3 orientation = tilted_by(angle);
+        // Levels of the same ways, from the top down, and a part that takes one of them.
+        std::vector<Vec3> ways;
+        for (int k = 0; k < 5; ++k) ways.push_back({5 * pick(10) - 5, 10 * pick(4), 0});
+        const double step = trial % 4 == 0 ? 11.9 + part_of(0.3) : 4.0 + pick(8);
+        const double inexact = trial % 2 == 0 ? 0.02 : 0.08;
+        const auto shift = [&](double depth) {
+            const auto off = [&] { return part_of(2.0 * inexact) - inexact; };
+            return Vec3(off(), off(), off()) - depth * orientation[2];
+        };
+        for (double depth = step; depth < 36.0; depth += step)
+            for (size_t k = 0; k < 4; ++k)
+                cut(stock, {.cutter = cutter,
+                            .from = ways[k] + shift(depth),
+                            .to = ways[k + 1] + shift(depth),
+                            .orientation = orientation});
+        for (int query = 0; query < 12; ++query) {
+            const size_t k = rng() % 4;
+            const double first = part_of(1.4) - 0.2, last = part_of(1.4) - 0.2;
+            const double depth = pick(34), sinking = query % 2 == 0 ? 0.0 : pick(8) - 4.0;
+            const auto at = [&](double t) { return ways[k] + t * (ways[k + 1] - ways[k]); };
+            const Vec3 from = at(first) + shift(depth), to = at(last) + shift(depth + sinking);
+            const Mat3 held_by = query % 5 == 0 ? tilted_by(angle + part_of(0.02)) : orientation;
+            const double sideways = 0.03 + part_of(0.1);
+            if (!stays_in_own_cut(stock, {part, flutes, from, to, sideways, held_by})) continue;
+            ++held;
+            for (int point = 0; point < 400; ++point) {
+                const double t = part_of(1.0), h = 12 + sideways + part_of(23 - sideways);
+                const double around = part_of(6.2832), inner = pick(3) == 0 ? part_of(1.0) : 1.0;
+                const double r = (radius - sideways) * 0.99999 * inner;
+                const Vec3 p = from + t * (to - from)
+                               + held_by * Vec3(r * std::cos(around), r * std::sin(around), h);
+                if (p.x <= 0 || p.x >= 40 || p.y <= 0 || p.y >= 40 || p.z <= -40 || p.z >= 0)
+                    continue;
+                for_cells_at(stock, p, [&](int i, int j, const Square&) {
+                    EXPECT_FALSE(fresh_line(stock, i, j, p.x, p.y).contains(p.z))
+                        << trial << ' ' << p.x << ' ' << p.y << ' ' << p.z;
+                });
+            }
+        }
+    }
+    EXPECT_GT(held, 400);
 }
 
 } // namespace

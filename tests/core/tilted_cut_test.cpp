@@ -11,21 +11,12 @@ namespace core {
 namespace {
 
 using test_support::CutBox;
+using test_support::for_cells_at;
 using test_support::random_direction;
 using test_support::random_point;
 using test_support::random_tilted_cut_box;
 
 constexpr double spacing = 0.7;
-
-/// Calls act(i, j, square) for every cell whose closed square contains the point.
-template <typename Act>
-void for_cells_at(const CutModel& model, const Vec3& p, const Act& act) {
-    for (int j = 0; j < model.columns.v_count(); ++j)
-        for (int i = 0; i < model.columns.u_count(); ++i) {
-            const Square s = cell_square(model, i, j);
-            if (s.x0 <= p.x && p.x <= s.x1 && s.y0 <= p.y && p.y <= s.y1) act(i, j, s);
-        }
-}
 
 TEST(TiltedCut, LeavesEveryPointThatIsStillStockInTheColumns) {
     std::mt19937 rng(161);

@@ -95,4 +95,14 @@ inline CutBox random_tilted_cut_box(std::mt19937& rng, size_t count, double path
     return world;
 }
 
+/// Calls act(i, j, square) for every cell whose closed square contains the point.
+template <typename Act>
+void for_cells_at(const core::CutModel& model, const core::Vec3& p, const Act& act) {
+    for (int j = 0; j < model.columns.v_count(); ++j)
+        for (int i = 0; i < model.columns.u_count(); ++i) {
+            const core::Square s = core::cell_square(model, i, j);
+            if (s.x0 <= p.x && p.x <= s.x1 && s.y0 <= p.y && p.y <= s.y1) act(i, j, s);
+        }
+}
+
 } // namespace test_support

@@ -115,9 +115,16 @@ StockObservation StockProbe::observe_lower(const MovingBody& body, const Leg& le
 
 bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const CutModel& stock,
                           const Allowance& allowance) const {
+    if (context_.tool.parts.empty() || leg.turns || leg.positions.size() > 2) return false;
     // A shank does not cut, so it may have been inside the stock on the same path.
-    if (context_.tool.parts.empty() || body.kind != PartKind::flutes) return false;
-    if (leg.turns || leg.positions.size() > 2) return false;
+    if (body.kind != PartKind::flutes)
+        return body.profile && fits_own_cut(context_.tool, body.kind)
+               && stays_in_own_cut(stock, {.part = *body.profile,
+                                           .flutes = context_.tool.parts[0].profile,
+                                           .from = leg.positions.front(),
+                                           .to = leg.positions.back(),
+                                           .sideways = 0.5 * contact_depth(allowance) - leg.error,
+                                           .orientation = leg.orientation});
     PathQuery path{.flutes = context_.tool.parts[0].profile,
                    .from = leg.positions.front(),
                    .to = leg.positions.back(),
