@@ -328,14 +328,13 @@ Result<void> CoprocessorCheck::query_motion(const core::Motion& motion, At& at,
         rapid && at.off_motion > 0.0 && at.corners.last.kind == core::MotionKind::rapid;
     at.off_motion += off_by_axes;
     if (auto asked = query_corner(corner, between_feeds, at, block); !asked) return asked;
-    at.corners.of_cuts = std::max(at.corners.of_cuts, corner.of_cuts);
+    at.corners.note_corner_of_cuts(corner.of_cuts);
     at.follows = {};
     if (off_by_axes + at.corners.by_axes_of_cuts == 0.0) {
         const bool leaves = rises && !is_rounded, is_single = rapid && !at.is_cycle;
         const bool may_cut = leaves || (at.tool && turns_to_cut(at.spindle, *at.tool));
         at.follows = {may_cut && follows_cuts(at.corners, at.called, leaves, is_single),
-                      first_own_cut(at.corners, at.called, leaves, is_single),
-                      leaves ? std::max(at.off_motion, at.corners.of_cuts) : at.off_motion};
+                      first_own_cut(at.corners, at.called, leaves, is_single)};
     }
     note_corner(at.corners, motion, path);
     for (const core::Leg& leg : path.legs) {
@@ -550,8 +549,11 @@ CoprocessorCheck::Question CoprocessorCheck::question(const core::MovingBody& bo
         if (fixture || !at.tool || !fits_own_cut(*at.tool, body.kind)) return false;
         if (body.kind == core::PartKind::flutes) return at.follows.flutes;
         return at.follows.first_cut
-               && stays_in_own_cut(*setup_, *at.tool, body, leg, at.stock, at.follows.sideways,
-                                   *at.follows.first_cut);
+               && follows_flutes(
+                   *setup_, *at.tool, body, leg, at.stock,
+                   {.first = *at.follows.first_cut,
+                    .before_block = at.stock.log.size(),
+                    .sideways = std::max(at.corners.own.by, 0.5 * contact_depth(allowance))});
     };
     const bool may_touch =
         allowance.distance <= core::resolution && (off <= contact_depth(allowance) || follows());

@@ -122,7 +122,6 @@ private:
         struct Follows {
             bool flutes = false;
             std::optional<size_t> first_cut; // that made room for other parts, see first_own_cut
-            double sideways = 0.0;           // of it, mm
         } follows;
         bool at_corner = false; // legs of a corner are asked about; they cut nothing
     };

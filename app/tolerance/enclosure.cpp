@@ -441,7 +441,8 @@ std::optional<LimitingPair> Enclosure::judge_legs(Run& run, size_t event,
     std::vector<core::PairClearance> judged;
     for (core::TrackedPair& pair : pairs) {
         if (cuts && pair.pair == core::Pair{core::PartKind::flutes}) continue;
-        core::widen(pair, of, run.state.corners, false);
+        if (core::widen(pair, of, run.state.corners) != core::ContactDoubt::none)
+            pair.verdict = std::max(pair.verdict, core::Verdict::undecided);
         judged.push_back(pair);
     }
     for (const core::PairClearance& pair : judged)

@@ -1,7 +1,6 @@
 #include "core/dbm/covered_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -150,14 +149,18 @@ std::optional<Interval> heights_of_radius(const RevolvedProfile& profile, double
 /// Where the axis of a part need not be covered any more: sets of pairs of a fraction of the path
 /// and a height above the tip. All these sets are convex.
 ///
-/// `entry`: the path, moved beside the part's axis into the box of the stock where it is outside.
-/// The part there contains all of the part on the path that is in the box: no point of a box is
-/// farther from the point of it that is next to another one than from that. So only this has to be
-/// covered by cuts, and these are not logged farther out.
+/// `ways`: the path, and others beside which the part contains all of the part on the path that is
+/// in the box of the stock, for example with the axis moved to the nearest place in the box. Any of
+/// them may be covered. Moves that meet no stock are not logged, so a cut may end where it has left
+/// the stock.
 class Covers {
 public:
-    Covers(const CutModel& stock, const PartPathQuery& question, const std::array<Vec3, 2>& entry)
-        : question_(question), entry_(entry) {
+    struct Way {
+        Vec3 from, to; // of the tip
+    };
+
+    Covers(const CutModel& stock, const PartPathQuery& question, std::vector<Way> ways)
+        : question_(question), ways_(std::move(ways)) {
         const Aabb part = bounds(question.part);
         // With a gap, the part may be as long as it is.
         heights_ = {part.min.z + (question.gap > 0.0 ? 0.0 : question.sideways), part.max.z};
@@ -190,9 +193,14 @@ private:
     void add_moves(const CutModel& stock, double radius) {
         const double parallel = question_.gap > 0.0 ? 0.02 : 1e-9; // radians
         const Vec3 up = question_.orientation[2];
-        const auto numbers = tips_near(stock, tips_around());
+        const Aabb flutes = bounds(question_.flutes);
+        const double reach = is_upright(question_.orientation)
+                                 ? flutes.max.x
+                                 : glm::length(Vec3(flutes.max.x, 0.0, flutes.max.z));
+        const auto numbers = tips_near(stock, tips_around(), reach);
         for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) {
             if (*number < question_.first_move) break;
+            if (*number >= question_.moves_end) continue;
             const CutterSweep& sweep = stock.log[*number].sweep;
             if (glm::length(sweep.orientation[2] - up) > parallel) continue;
             const double error = sweep.cutter->path_error;
@@ -203,19 +211,21 @@ private:
         }
     }
 
-    /// Adds a move of a cutter that is wide enough between two heights.
+    /// Adds what a move of a cutter covers that is wide enough between two heights.
     void add_move(const CutterSweep& sweep, const Interval& heights, double near) {
         const Mat3 inverse = glm::transpose(sweep.orientation);
-        Move move{.start = inverse * (entry_[0] - sweep.from),
-                  .path = inverse * (entry_[1] - entry_[0]),
-                  .up = inverse * question_.orientation[2],
+        Move move{.up = inverse * question_.orientation[2],
                   .by = inverse * (sweep.to - sweep.from),
                   .heights = {heights.lower - rounding, heights.upper + rounding},
                   .near = near};
         for (const Vec3& tip : {sweep.from, sweep.to})
             for (const double height : {heights.lower, heights.upper})
                 move.axis.extend(tip + height * sweep.orientation[2]);
-        moves_.push_back(move);
+        for (const Way& way : ways_) {
+            move.start = inverse * (way.from - sweep.from);
+            move.path = inverse * (way.to - way.from);
+            moves_.push_back(move);
+        }
     }
 
     /// A box around the tips of all cutters that may cover the part.
@@ -223,22 +233,23 @@ private:
         const Vec3 up = question_.orientation[2];
         const double reach = bounds(question_.flutes).max.z;
         Aabb box;
-        for (const Vec3& tip : entry_) {
-            box.extend(tip + heights_.upper * up);
-            box.extend(tip + (heights_.lower - reach) * up);
-        }
+        for (const Way& way : ways_)
+            for (const Vec3& tip : {way.from, way.to}) {
+                box.extend(tip + heights_.upper * up);
+                box.extend(tip + (heights_.lower - reach) * up);
+            }
         return box.grown(question_.sideways);
     }
 
-    Vec3 on_axis(const Vec3& from, const Vec3& to, double t, double h) const {
-        return from + t * (to - from) + h * question_.orientation[2];
+    Vec3 on_axis(const Way& way, double t, double h) const {
+        return way.from + t * (way.to - way.from) + h * question_.orientation[2];
     }
 
     /// Whether a set contains a point; the first six are the sides of the box.
     bool contains(size_t set, double t, double h) const {
         if (set < 6) {
             const int axis = static_cast<int>(set / 2);
-            const double at = on_axis(question_.from, question_.to, t, h)[axis];
+            const double at = on_axis(ways_[0], t, h)[axis];
             return set % 2 == 0 ? at + clear_[axis] <= box_.min[axis]
                                 : at - clear_[axis] >= box_.max[axis];
         }
@@ -271,7 +282,7 @@ private:
         Aabb here;
         for (const double t : {path.lower, path.upper})
             for (const double h : {heights.lower, heights.upper})
-                here.extend(on_axis(entry_[0], entry_[1], t, h));
+                for (const Way& way : ways_) here.extend(on_axis(way, t, h));
         here = here.grown(question_.sideways);
         std::vector<size_t> near;
         unsigned any = 0;
@@ -314,7 +325,7 @@ private:
     static constexpr size_t most_tests = 100'000;
 
     const PartPathQuery& question_;
-    std::array<Vec3, 2> entry_;
+    std::vector<Way> ways_; // the path is the first
     Interval heights_;
     Aabb box_;
     Vec3 clear_ = Vec3(0.0); // of the axis from each side of the box
@@ -355,7 +366,7 @@ bool stays_in_own_cut(const CutModel& stock, const PartPathQuery& question) {
     if (question.sideways <= 0.0) return false;
     const Vec3 &from = question.from, by = question.to - from;
     if (!is_upright(question.orientation))
-        return Covers(stock, question, {from, from + by}).everything();
+        return Covers(stock, question, {{from, from + by}}).everything();
     // Parts of the path, each on one side of each side of the box.
     const Aabb& box = stock.outer_box;
     std::vector<double> ends{0.0, 1.0};
@@ -364,16 +375,21 @@ bool stays_in_own_cut(const CutModel& stock, const PartPathQuery& question) {
             if (const double t = (side - from[axis]) / by[axis]; t > 0.0 && t < 1.0)
                 ends.push_back(t);
     std::sort(ends.begin(), ends.end());
-    const auto into_box = [&](const Vec3& tip) {
-        return Vec3(std::clamp(tip.x, box.min.x, box.max.x),
-                    std::clamp(tip.y, box.min.y, box.max.y), tip.z);
-    };
     for (size_t i = 0; i + 1 < ends.size(); ++i) {
         PartPathQuery part = question;
         part.from = from + ends[i] * by;
         part.to = from + ends[i + 1] * by;
-        if (!Covers(stock, part, {into_box(part.from), into_box(part.to)}).everything())
-            return false;
+        // For a point p of the box and q of the axis, |p - clamp(q)| <= |p - q|, also if only one
+        // coordinate is clamped.
+        std::vector<Covers::Way> ways{{part.from, part.to}};
+        for (const int axis : {0, 1})
+            for (size_t k = 0, count = ways.size(); k < count; ++k) {
+                Covers::Way way = ways[k];
+                for (Vec3* tip : {&way.from, &way.to})
+                    (*tip)[axis] = std::clamp((*tip)[axis], box.min[axis], box.max[axis]);
+                if (way.from != ways[k].from || way.to != ways[k].to) ways.push_back(way);
+            }
+        if (!Covers(stock, part, std::move(ways)).everything()) return false;
     }
     return true;
 }

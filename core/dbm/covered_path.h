@@ -44,20 +44,21 @@ struct PartPathQuery {
     double sideways = 0.0;                 // allowed distance of its axis from that of a cutter
     Mat3 orientation = Mat3(1.0);          // stock_from_tool
     uint32_t first_move = 0;               // number of the first move in the log that counts
+    uint32_t moves_end = UINT32_MAX;       // and of the first later one that does not
     double gap = 0.0; // mm: what is left between two cuts counts if it is wider than this
 };
 
 /// Whether a part of a tool stays where cutters at least as wide have been: beside each point of
 /// its axis, at most `sideways` away, errors of the cuts included, the axis of such a cutter has
 /// passed while that cut at this height. Where the part stays more than `sideways` beside the box
-/// of the stock, this is not needed; where its axis is outside of it, the nearest place in it
-/// counts. Cutters must be parallel to the part.
+/// of the stock, this is not needed; where an upright axis is outside of it, the nearest place in
+/// it may be covered instead. Cutters must be parallel to the part.
 ///
 /// Result:  if true, and `gap` is 0, no stock is where the part goes if it is made slimmer by
 ///          `sideways` on all sides. With a gap, cutters may also be out of parallel by 0.02
 ///          radians. False proves nothing.
 /// Cost:    the number of logged moves near the path times the number of parts into which path
-///          and heights are divided.
+///          and heights are divided; at most 100,000 of these products, then false.
 bool stays_in_own_cut(const CutModel& stock, const PartPathQuery& question);
 
 } // namespace core

@@ -136,10 +136,10 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
     return model;
 }
 
-std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box) {
+std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box, double reach) {
     std::vector<uint32_t> numbers;
     if (model.columns.u_count() == 0) return numbers;
-    for_tiles(cells_in(model, box), model.column_boxes, [&](size_t tile) {
+    for_tiles(cells_in(model, box.grown(reach)), model.column_boxes, [&](size_t tile) {
         const SharedLog<SweepRun>& runs = model.history[tile];
         for (size_t k = 0; k < runs.size(); ++k) {
             if (!overlaps(runs[k].paths, box)) continue;

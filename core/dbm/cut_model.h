@@ -416,8 +416,8 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 /// The material on a line along Z through cell (i, j), recomputed from the log.
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y);
 
-/// The numbers of the logged sweeps that came near the columns at a box and whose tip may have come
-/// into it, in order.
-std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box);
+/// The numbers of the logged sweeps that came near the columns at a box, or within `reach` of it,
+/// and whose tip may have come into it, in order.
+std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box, double reach = 0.0);
 
 } // namespace core

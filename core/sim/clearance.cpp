@@ -300,7 +300,7 @@ std::optional<size_t> first_own_cut(const RoundedCorners& corners,
                                     const std::optional<ToolNumber>& tool, bool rises,
                                     bool is_rapid) {
     const OwnCuts& own = corners.own;
-    if (!corners.has_cut || own.tool != tool) return {};
+    if (!corners.has_cut || own.tool != tool || own.by == infinity) return {};
     if (rises) return own.since_tool;
     if (is_rapid || own.by != corners.by) return {};
     return own.since_mode;
@@ -316,32 +316,22 @@ bool fits_own_cut(const ToolAssembly& tool, PartKind part) {
     return is_below_holder(part) && radius_of(part) <= radius_of(PartKind::flutes) + resolution;
 }
 
-bool depends_on_own_cut(const PairClearance& pair, const BlockDeviation& of,
-                        const RoundedCorners& corners) {
-    const double off = path_deviation(pair.pair, of.of_feeds + of.by_axes, corners);
-    return !pair.pair.fixture && pair.verdict == Verdict::clear
-           && pair.allowance.distance <= resolution && off > contact_depth(pair.allowance)
-           && pair.lower <= off;
-}
-
-void widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners,
-           bool follows_cuts, bool touches_raw_stock) {
+ContactDoubt widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners) {
     const double off = path_deviation(pair.pair, of.of_feeds + of.by_axes, corners);
     const double off_above =
         std::max(off, path_deviation(pair.pair, of.of_rapids + of.by_axes, corners));
-    if (off_above == 0.0) return;
+    if (off_above == 0.0) return ContactDoubt::none;
     pair.lower = std::max(0.0, pair.lower - off);
-    if (pair.verdict == Verdict::collision) return;
+    if (pair.verdict == Verdict::collision) return ContactDoubt::none;
     pair.upper += off_above;
     if (pair.allowance.distance > resolution) {
         pair.verdict = judge_distance(pair.allowance, pair.lower, pair.upper);
-        return;
+        return ContactDoubt::none;
     }
-    if (pair.lower > 0.0 || touches_raw_stock) return;
-    const bool follows = follows_cuts && !pair.pair.fixture;
-    const double by_axes = of.by_axes + (pair.pair.fixture ? 0.0 : corners.by_axes_of_cuts);
-    if ((follows ? by_axes : off) > contact_depth(pair.allowance))
-        pair.verdict = std::max(pair.verdict, Verdict::undecided);
+    const double depth = contact_depth(pair.allowance);
+    if (pair.lower > 0.0 || off <= depth) return ContactDoubt::none;
+    const bool may_follow = !pair.pair.fixture && of.by_axes + corners.by_axes_of_cuts <= depth;
+    return may_follow ? ContactDoubt::unless_in_own_cut : ContactDoubt::unless_at_raw_stock;
 }
 
 } // namespace core

@@ -148,7 +148,7 @@ struct CornerStart {
 /// Which moves in the log of the stock are those of the tool that has cut last.
 struct OwnCuts {
     std::optional<ToolNumber> tool;
-    double by = 0.0;       // how far feeds deviated when it cut last, mm
+    double by = 0.0;       // how far its feeds deviated at most, mm; infinite after a wider corner
     size_t since_tool = 0; // number of its first move
     size_t since_mode = 0; // of its first one since feeds deviate as far as that
 };
@@ -197,15 +197,22 @@ struct RoundedCorners {
 
     /// Records a cutting feed, before which the stock's log has `logged` moves.
     void note_cut(const std::optional<ToolNumber>& by_tool, bool is_arc, size_t logged) {
-        if (own.tool != by_tool) own.since_tool = logged;
-        if (own.tool != by_tool || own.by != by) own.since_mode = logged;
+        const double most = std::max(by, last.by);
+        if (own.tool != by_tool || own.by == infinity) own.since_tool = logged;
+        if (own.tool != by_tool || own.by != most) own.since_mode = logged;
         own.tool = by_tool;
-        own.by = by;
+        own.by = most;
         if (of_feed(is_arc) == 0.0) return;
         by_several = by_several || (tool && tool != by_tool);
         tool = by_tool;
         mode_of_cuts = std::max(mode_of_cuts, by);
         of_cuts = std::max(of_cuts, of_feed(is_arc));
+    }
+
+    /// Records how far a corner between cutting feeds may have been rounded.
+    void note_corner_of_cuts(double off) {
+        of_cuts = std::max(of_cuts, off);
+        if (off > std::max(by, by_arc)) own.by = infinity;
     }
 };
 
@@ -251,24 +258,23 @@ std::optional<size_t> first_own_cut(const RoundedCorners& corners,
 /// wider than they are. Other parts follow no cut.
 bool fits_own_cut(const ToolAssembly& tool, PartKind part);
 
-/// Whether `widen` asks for `follows_cuts`.
-bool depends_on_own_cut(const PairClearance& pair, const BlockDeviation& of,
-                        const RoundedCorners& corners);
+/// Whether a pair that may touch is in doubt because its bodies deviate.
+enum class ContactDoubt : uint8_t {
+    none,
+    unless_in_own_cut,  // unless the body moves where its tool has cut, and deviates as that did
+    unless_at_raw_stock // unless it at most touches the raw stock, even if it deviates
+};
 
 /// Widens the bounds of a pair by the possible deviation between its bodies.
 ///
-/// For a pair with the stock that may touch, the verdict is kept if `follows_cuts`: the body moves
-/// where its tool has cut, and deviates as that did. Otherwise it is kept if the material that may
-/// be left at a corner is less than the contact depth.
-///
-/// Tolerances of axes displace the tool and its cuts differently, and not the raw stock: what they
-/// may press in is never clear.
+/// Result:  whether the contact of a pair that may touch is in doubt: material may be left at a
+///          corner that is pressed in by more than the contact depth. The verdict does not include
+///          this. Tolerances of axes displace the tool and its cuts differently, and not the raw
+///          stock: what they may press in is in doubt in the cut of the tool, too.
 ///
 /// `of`: deviations of the block's motions. That of rapids only widens the upper bound: `lower`
-/// includes their corners. `touches_raw_stock`: the pair at most touches the raw stock, even if it
-/// deviates, so that its verdict is kept.
-void widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners,
-           bool follows_cuts, bool touches_raw_stock = false);
+/// includes their corners.
+ContactDoubt widen(PairClearance& pair, const BlockDeviation& of, const RoundedCorners& corners);
 
 /// Widens the upper bound of a pair by the deviation of the stock's mesh; its tolerance is in the
 /// lower one already.

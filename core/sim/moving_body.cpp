@@ -119,27 +119,31 @@ RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const
     return relative;
 }
 
-bool stays_in_own_cut(const Setup& setup, const ToolAssembly& tool, const MovingBody& part,
-                      const Leg& leg, const CutModel& stock, double sideways, size_t first_move) {
-    constexpr double parallel = 0.02; // radians
+bool follows_flutes(const Setup& setup, const ToolAssembly& tool, const MovingBody& part,
+                    const Leg& leg, const CutModel& stock, const OwnMoves& own, int depth) {
+    constexpr int deepest = 10;
     if (!part.profile || !leg.straight) return false;
-    const double turn = turn_of(setup.machine, leg.positions.front(), leg.positions.back());
-    const int parts = std::max(1, static_cast<int>(std::ceil(turn / parallel)));
-    for (int i = 0; i < parts; ++i) {
-        const Leg stretched =
-            parts == 1 ? leg : stretch(leg, double(i) / parts, double(i + 1) / parts);
-        const RelativeLeg way = leg_against(setup, {}, part, stretched);
-        if (!core::stays_in_own_cut(stock, {.part = *part.profile,
-                                            .flutes = tool.parts[0].profile,
-                                            .from = way.positions.front(),
-                                            .to = way.positions.back(),
-                                            .sideways = sideways,
-                                            .orientation = way.orientation,
-                                            .first_move = static_cast<uint32_t>(first_move),
-                                            .gap = sideways}))
-            return false;
+    const RelativeLeg way = leg_against(setup, {}, part, leg);
+    if (way.turns && way.error > 0.25 * own.sideways) {
+        if (depth == deepest) return false;
+        const std::array<Leg, 2> parts = halves(leg);
+        return follows_flutes(setup, tool, part, parts[0], stock, own, depth + 1)
+               && follows_flutes(setup, tool, part, parts[1], stock, own, depth + 1);
     }
-    return true;
+    const Vec3 from = way.positions.front(), by = way.positions.back() - from;
+    const double up = glm::dot(by, way.orientation[2]);
+    const bool rises_sideways =
+        up > resolution && glm::length(by - up * way.orientation[2]) > resolution;
+    return stays_in_own_cut(
+        stock, {.part = *part.profile,
+                .flutes = tool.parts[0].profile,
+                .from = from,
+                .to = from + by,
+                .sideways = own.sideways - way.error,
+                .orientation = way.orientation,
+                .first_move = static_cast<uint32_t>(own.first),
+                .moves_end = rises_sideways ? static_cast<uint32_t>(own.before_block) : UINT32_MAX,
+                .gap = own.sideways});
 }
 
 bool is_exempt(const Machine& machine, const MovingBody& body, const Fixture& fixture) {

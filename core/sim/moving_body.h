@@ -69,10 +69,17 @@ double axis_tolerance_error(const Setup& setup, const ToolAssembly* tool, const 
 RelativeLeg leg_against(const Setup& setup, std::optional<size_t> fixture, const MovingBody& body,
                         const Leg& leg);
 
-/// Whether a part of a tool stays on a leg where its flutes have cut, within `sideways`, since move
-/// `first_move` of the stock's log: see the function of the same name in core/dbm/covered_path.h.
-bool stays_in_own_cut(const Setup& setup, const ToolAssembly& tool, const MovingBody& part,
-                      const Leg& leg, const CutModel& stock, double sideways, size_t first_move);
+/// The moves of a stock's log in whose cuts a part of the tool may stay.
+struct OwnMoves {
+    size_t first = 0;
+    size_t before_block = 0; // number of the first move of the current block
+    double sideways = 0.0;   // allowed distance, mm
+};
+
+/// Whether a part of a tool stays on a leg where its flutes have cut: see stays_in_own_cut. Moves
+/// of the block count unless the leg rises sideways, where flutes come after the part.
+bool follows_flutes(const Setup& setup, const ToolAssembly& tool, const MovingBody& part,
+                    const Leg& leg, const CutModel& stock, const OwnMoves& own, int depth = 0);
 
 /// Whether two bodies are never checked against each other: they are fixed to each other, or are
 /// machine bodies on neighbouring links.

@@ -118,8 +118,13 @@ struct DeepSlot {
     }
     bool holds(const Vec3& from, const Vec3& to, const RevolvedProfile& part = shank,
                uint32_t first_move = 0, double sideways = 0.2) const {
-        return stays_in_own_cut(
-            stock, {part, end_mill, from, to, sideways, Mat3(1.0), first_move, sideways});
+        return stays_in_own_cut(stock, {.part = part,
+                                        .flutes = end_mill,
+                                        .from = from,
+                                        .to = to,
+                                        .sideways = sideways,
+                                        .first_move = first_move,
+                                        .gap = sideways});
     }
 };
 
@@ -152,6 +157,49 @@ TEST(OwnCutOfAPart, HoldsBelowLevelsInPieces) {
         EXPECT_FALSE(slot.holds({-10, 50, -40}, {130, 60, -40})) << step;
         EXPECT_FALSE(slot.holds({-5.1, 20, -40}, {-5.1, 80, -40})) << step << ": beside the face";
     }
+}
+
+/// The tool's axis may stay outside of the stock, or leave it obliquely.
+TEST(OwnCutOfAPart, HoldsBesideTheBlockAndThroughItsSides) {
+    DeepSlot slot;
+    for (const double z : {-15.0, -30.0, -45.0}) {
+        slot.mill({-10, -3, z}, {110, -3, z});
+        slot.mill({40, 60, z}, {120, 100, z});
+    }
+    EXPECT_TRUE(slot.holds({-10, -3, -45}, {110, -3, -45}));
+    EXPECT_FALSE(slot.holds({-10, -2.7, -45}, {110, -2.7, -45}));
+    EXPECT_TRUE(slot.holds({40, 60, -45}, {120, 100, -45}));
+    // In pieces round a corner of the block, of which some meet nothing.
+    DeepSlot round;
+    for (const double z : {-15.0, -30.0, -45.0})
+        for (double x = 90; x < 110; x += 0.5) round.mill({x, -3, z}, {x + 0.5, -3, z});
+    EXPECT_TRUE(round.holds({92, -3, -45}, {108, -3, -45}));
+}
+
+/// Where a pocket was cut before, the cells below the axis hold nothing.
+TEST(OwnCutOfAPart, HoldsAtTheWallOfAPocket) {
+    DeepSlot slot;
+    for (const double z : {-15.0, -30.0, -45.0, -60.5})
+        for (double y = 10; y < 70; y += 6) slot.mill({10, y, z}, {90, y, z});
+    for (const double z : {-15.0, -30.0, -45.0}) slot.mill({10, 70, z}, {90, 70, z});
+    EXPECT_TRUE(slot.holds({10, 70, -45}, {90, 70, -45}));
+    EXPECT_FALSE(slot.holds({10, 70, -45}, {90, 72, -45}));
+}
+
+TEST(OwnCutOfAPart, CountsMovesBetweenTwoNumbers) {
+    DeepSlot slot;
+    for (const double z : {-30.0, -15.0, -45.0}) slot.mill({-10, 50, z}, {110, 50, z});
+    for (const uint32_t first : {0U, 1U})
+        for (const uint32_t end : {1U, 2U})
+            EXPECT_EQ(stays_in_own_cut(slot.stock, {.part = shank,
+                                                    .flutes = end_mill,
+                                                    .from = {0, 50, -45},
+                                                    .to = {90, 50, -45},
+                                                    .sideways = 0.2,
+                                                    .first_move = first,
+                                                    .moves_end = end,
+                                                    .gap = 0.2}),
+                      first == 0 && end == 2);
 }
 
 TEST(OwnCutOfAPart, HoldsWhereTheToolPlungesAndRises) {
@@ -203,8 +251,13 @@ TEST(OwnCutOfAPart, HoldsForTiltedTools) {
     for (const double along : {-15.0, -30.0, -45.0})
         slot.mill(at(60, along), at(90, along), tilted);
     const auto holds = [&](double from, double to, const Mat3& orientation, double gap = 0.0) {
-        return stays_in_own_cut(
-            slot.stock, {shank, end_mill, at(from, -45), at(to, -45), 0.2, orientation, 0, gap});
+        return stays_in_own_cut(slot.stock, {.part = shank,
+                                             .flutes = end_mill,
+                                             .from = at(from, -45),
+                                             .to = at(to, -45),
+                                             .sideways = 0.2,
+                                             .orientation = orientation,
+                                             .gap = gap});
     };
     EXPECT_TRUE(holds(61, 89, tilted));
     EXPECT_FALSE(holds(61, 91, tilted));

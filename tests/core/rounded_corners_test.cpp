@@ -479,15 +479,15 @@ Corner with_deep_stock(double shank, double tolerance) {
     return corner;
 }
 
-/// The verdicts of a feed at each height along X at Y50 through the whole block; worst.
-Verdict mill_slot(Corner& corner, const std::vector<double>& heights) {
+/// The worst verdict of feeds at each height along X through the whole block.
+Verdict mill_slot(Corner& corner, const std::vector<double>& heights, double y = 50.0) {
     Verdict worst = Verdict::clear;
     for (const double z : heights) {
-        corner.go(MotionKind::rapid, {-20, 50, 10});
-        corner.go(MotionKind::rapid, {-20, 50, z});
-        worst = std::max(worst, corner.go(MotionKind::feed, {60, 50, z}));
-        worst = std::max(worst, corner.go(MotionKind::feed, {110, 50, z}));
-        worst = std::max(worst, corner.go(MotionKind::rapid, {110, 50, 10}));
+        corner.go(MotionKind::rapid, {-20, y, 10});
+        corner.go(MotionKind::rapid, {-20, y, z});
+        worst = std::max(worst, corner.go(MotionKind::feed, {60, y, z}));
+        worst = std::max(worst, corner.go(MotionKind::feed, {110, y, z}));
+        worst = std::max(worst, corner.go(MotionKind::rapid, {110, y, 10}));
     }
     return worst;
 }
@@ -536,6 +536,36 @@ TEST(RoundedCorners, LeaveDoubtWhereTheFlutesDeviatedLessThanTheShankDoes) {
     // The upper level once more: now both deviate alike.
     mill_slot(corner, {-15});
     EXPECT_EQ(mill_slot(corner, {-30}), Verdict::clear);
+    EXPECT_EQ(
+        corner.state.assumptions.count("the control rounds the same corner alike each time: a "
+                                       "tool that moves where it has cut deviates as it did "
+                                       "then"),
+        1U);
+}
+
+TEST(RoundedCorners, LeaveDoubtWhereTheShankIsNearTheWallOfAnotherTool) {
+    for (const double gap : {0.5, 1.5}) {
+        Corner corner = with_deep_stock(10.0, 0.3);
+        for (const double y : {40.0, 48.0}) mill_slot(corner, {-15, -30, -45}, y);
+        corner.give({ToolChange{ToolNumber{2}}});
+        corner.give({SpindleChange{SpindleDirection::clockwise, 6000.0}});
+        corner.go(MotionKind::rapid, {50, 10, 10});
+        corner.go(MotionKind::feed, {50, 10, -15});
+        corner.go(MotionKind::rapid, {50, 10, 10});
+        // Both may be off by 0.3 mm.
+        EXPECT_EQ(mill_slot(corner, {-45}, 40 + gap),
+                  gap < 0.6 ? Verdict::undecided : Verdict::clear);
+    }
+}
+
+TEST(RoundedCorners, LeaveDoubtWhereTheFlutesComeAfterTheShank) {
+    Corner corner = with_deep_stock(9.8, 0.3);
+    corner.give({PathModeChange{Blending::exact_stop, {}}});
+    corner.go(MotionKind::rapid, {50, 50, 10});
+    corner.go(MotionKind::feed, {50, 50, -15});
+    corner.go(MotionKind::feed, {50, 50, -50});
+    corner.give({within(0.3)});
+    EXPECT_EQ(corner.go(MotionKind::feed, {50.15, 50, -2}), Verdict::undecided);
 }
 
 TEST(RoundedCorners, LeaveDoubtWhereFlutesThatDoNotTurnPassTheStock) {

@@ -111,20 +111,18 @@ double LegCheck::reach_into_raw_stock(const Pair& pair, const Leg& leg,
     return least + way.error;
 }
 
-bool LegCheck::stays_in_own_cut(const Pair& pair, const Leg& leg, const CutModel& stock,
-                                double sideways, size_t first_move, int depth) const {
+bool LegCheck::follows_flutes(const Pair& pair, const Leg& leg, const CutModel& stock,
+                              const OwnMoves& own, double apart, int depth) const {
     constexpr int deepest = 6;
     const MovingBody& body = context_.body_of(pair);
-    if (core::stays_in_own_cut(context_.setup, context_.tool, body, leg, stock, sideways,
-                               first_move))
-        return true;
+    if (core::follows_flutes(context_.setup, context_.tool, body, leg, stock, own)) return true;
     if (!body.profile || !leg.straight) return false;
-    if (context_.stays_apart(*body.profile, context_.against_stock(body, leg), stock, sideways))
+    if (context_.stays_apart(*body.profile, context_.against_stock(body, leg), stock, apart))
         return true;
+    if (depth == deepest) return false;
     const std::array<Leg, 2> parts = halves(leg);
-    return depth < deepest
-           && stays_in_own_cut(pair, parts[0], stock, sideways, first_move, depth + 1)
-           && stays_in_own_cut(pair, parts[1], stock, sideways, first_move, depth + 1);
+    return follows_flutes(pair, parts[0], stock, own, apart, depth + 1)
+           && follows_flutes(pair, parts[1], stock, own, apart, depth + 1);
 }
 
 void LegCheck::rest(const AxisValues& position, double time, const CutModel& stock,

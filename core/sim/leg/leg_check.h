@@ -197,11 +197,10 @@ public:
     /// which that is least, mm; negative: it stays outside.
     double reach_into_raw_stock(const Pair& pair, const Leg& leg, const CutModel& stock) const;
 
-    /// Whether the part of the tool in a pair stays on a leg where its flutes have cut since move
-    /// `first_move` of the stock's log, or farther than `sideways` from the stock: see
-    /// core/dbm/covered_path.h.
-    bool stays_in_own_cut(const Pair& pair, const Leg& leg, const CutModel& stock, double sideways,
-                          size_t first_move, int depth = 0) const;
+    /// Whether the part of the tool in a pair stays on a leg where its flutes have cut
+    /// (follows_flutes), or at least `apart` from the stock.
+    bool follows_flutes(const Pair& pair, const Leg& leg, const CutModel& stock,
+                        const OwnMoves& own, double apart, int depth = 0) const;
 
     /// Whether the flutes stay at least `room` away from the stock, as far as bounds show.
     bool flutes_have_room(const Leg& leg, const CutModel& stock, double room) const {

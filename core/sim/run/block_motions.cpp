@@ -139,7 +139,9 @@ bool BlockRun::is_clear_from_anywhere(const Motion& motion) {
     state.memory.off_path = off_path + of.by_axes + state.corners.of_stock();
     TrackedPairs here;
     for (const Leg& leg : path.legs) leg_check(use(motion)).run(leg, result.duration, stock, here);
-    for (TrackedPair& pair : here) widen(pair, of, state.corners, false);
+    for (TrackedPair& pair : here)
+        if (widen(pair, of, state.corners) != ContactDoubt::none)
+            pair.verdict = std::max(pair.verdict, Verdict::undecided);
     state.memory = memory;
     const TrackedPair* worst = deciding_pair(here);
     return !worst || worst->verdict == Verdict::clear;

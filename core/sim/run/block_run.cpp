@@ -81,7 +81,11 @@ void BlockRun::check_tool_change() {
     TrackedPairs of_last_tool = std::exchange(pairs, {});
     check_rest(path);
     TrackedPairs there = std::exchange(pairs, std::move(of_last_tool));
-    for (TrackedPair& pair : there) widen(pair, {.by_axes = off_by_axes}, state.corners, true);
+    // The tool rests where it has come.
+    for (TrackedPair& pair : there)
+        if (widen(pair, {.by_axes = off_by_axes}, state.corners)
+            == ContactDoubt::unless_at_raw_stock)
+            pair.verdict = std::max(pair.verdict, Verdict::undecided);
     const TrackedPair* nearest = deciding_pair(there);
     if (!nearest || nearest->verdict == Verdict::clear) return;
     at_change = nearest->verdict;
@@ -320,19 +324,23 @@ bool BlockRun::touches_no_doubtful_stock(const PairClearance& pair) {
 
 bool BlockRun::follows_own_cut(const PairClearance& pair, bool rises) {
     if (!tool()) return false;
+    const RoundedCorners& corners = state.corners;
     const bool is_rapid = result.motion == BlockMotion::rapid;
     if (pair.pair.part == PartKind::flutes) {
         const bool may_cut = rises || std::any_of(legs.begin(), legs.end(), [](const auto& timed) {
                                  return timed.use == FluteUse::cutting;
                              });
-        return may_cut && follows_cuts(state.corners, state.tool, rises, is_rapid);
+        return may_cut && follows_cuts(corners, state.tool, rises, is_rapid);
     }
-    const auto first = first_own_cut(state.corners, state.tool, rises, is_rapid);
+    const auto first = first_own_cut(corners, state.tool, rises, is_rapid);
     if (!first || !fits_own_cut(*tool(), pair.pair.part)) return false;
-    const double sideways = rises ? std::max(off_path, state.corners.of_cuts) : off_path;
+    // Without rounded corners, its cuts are where they are programmed.
+    const double sideways = std::max(corners.own.by, 0.5 * contact_depth(pair.allowance));
+    const OwnMoves own{*first, moves_before, sideways};
+    const double apart = path_deviation(pair.pair, off_path + off_by_axes, corners);
     const LegCheck check = leg_check(FluteUse::not_cutting);
     return std::all_of(legs.begin(), legs.end(), [&](const TimedLeg& timed) {
-        return check.stays_in_own_cut(pair.pair, timed.leg, state.stock, sideways, *first);
+        return check.follows_flutes(pair.pair, timed.leg, state.stock, own, apart);
     });
 }
 
@@ -344,11 +352,14 @@ void BlockRun::conclude() {
     std::vector<double> on_the_way; // distance of each pair on the programmed path
     for (TrackedPair& pair : pairs) {
         on_the_way.push_back(pair.upper);
-        const bool may_follow = depends_on_own_cut(pair, of, state.corners);
-        const bool follows = may_follow && follows_own_cut(pair, rise);
-        const bool is_kept = follows && off_by_axes + state.corners.by_axes_of_cuts == 0.0;
-        widen(pair, of, state.corners, follows,
-              may_follow && !is_kept && touches_no_doubtful_stock(pair));
+        const ContactDoubt doubt = widen(pair, of, state.corners);
+        const bool follows =
+            doubt == ContactDoubt::unless_in_own_cut && follows_own_cut(pair, rise);
+        if (follows)
+            state.assumptions.insert("the control rounds the same corner alike each time: a tool "
+                                     "that moves where it has cut deviates as it did then");
+        if (doubt != ContactDoubt::none && !follows && !touches_no_doubtful_stock(pair))
+            pair.verdict = std::max(pair.verdict, Verdict::undecided);
         widen_by_stock(pair, setup.stock.deviation);
     }
     if (const TrackedPair* worst = deciding_pair(pairs)) {

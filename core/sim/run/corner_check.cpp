@@ -112,7 +112,7 @@ void BlockRun::check_corner(const Motion& motion, const Path& path) {
         check_region(plan.anywhere, plan.along, plan.deviation, plan.may_cut);
     if (!block.judgement && plan.kind == CornerPlan::Kind::beside_rest)
         check_beside_rest(plan.anywhere, plan.may_cut);
-    corners.of_cuts = std::max(corners.of_cuts, plan.of_cuts);
+    corners.note_corner_of_cuts(plan.of_cuts);
 }
 
 void BlockRun::check_beside_rest(const std::vector<Leg>& legs, bool may_cut) {
