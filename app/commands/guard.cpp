@@ -326,6 +326,7 @@ void GuardRun::write_log() {
 
 void GuardRun::run() {
     guard_.objection = [this](const feeler_segment& motion) { return objection(motion); };
+    guard_.is_mdi = [this] { return status_.state() && status_.state()->is_mdi; };
     guard_.tell = [this](const std::string& text) { tell(text); };
     guard_.after_motion = [this](const LiveMotion& motion) {
         if (log_) log_->add(motion);
@@ -378,7 +379,8 @@ core::Result<ExitCode> guard_machine(const GuardOptions& options) {
                  std::move(setup_text));
     run.open_log();
     print_note("watching LinuxCNC\n");
-    for (const std::string& assumption : setup.assumptions) print_note(assumption + "\n");
+    for (const std::string& assumption : setup.assumptions)
+        if (assumption != setup.start_assumption) print_note(assumption + "\n");
     run.run();
     print_note(run.summary());
     return run.refused() == 0 ? ExitCode::clear : ExitCode::findings;

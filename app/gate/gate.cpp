@@ -76,7 +76,9 @@ void Gate::from_sender(std::string_view bytes) {
 void Gate::act_at_once(char byte) {
     if (byte == stop) { // of grblHAL: it drops lines, and answers none
         links_.to_controller(std::string_view(&feed_hold, 1));
-        return say("the gate passes a stop (0x19) as a feed hold. Reset the controller to go on.");
+        return say(
+            "the gate passes a stop (0x19) as a feed hold. Reset the controller to drop what "
+            "waits; a cycle start (~) goes on with it.");
     }
     if (byte == cycle_start && is_derailed_)
         return say("lines would run from the wrong place. Reset Grbl to go on.");

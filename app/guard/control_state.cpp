@@ -20,6 +20,7 @@ core::Result<ControlState> read_control_state(std::string_view line) {
         state.tool = json.at("tool").get<int>();
         state.tool_length = json.at("tool_length").get<double>();
         state.is_homed = json.at("homed").get<bool>();
+        state.is_mdi = json.value("mdi", false);
     } catch (const nlohmann::json::exception& error) {
         return core::fail(core::ErrorCode::syntax,
                           fmt::format("the status of LinuxCNC cannot be read: {}", error.what()));

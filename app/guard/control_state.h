@@ -19,6 +19,7 @@ struct ControlState {
     double rotation_deg = 0.0;    // about Z
     int tool = 0;                 // in the spindle
     bool is_homed = false;        // all joints
+    bool is_mdi = false;          // the operator gives commands by MDI
     double tool_length = 0.0;     // as the tool table has it, units of the machine
 };
 

@@ -15,16 +15,20 @@ constexpr int64_t news_after = 500;     // milliseconds
 constexpr double least_time = 1e-7;     // seconds
 constexpr double turn_tolerance = 0.02; // mm
 
-std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer) {
+std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer, bool is_mdi) {
     std::string text = "Feeler stops before the next motion: ";
-    if (motion.line > 0 && motion.purpose == FEELER_TOOL_CHANGE)
+    if (is_mdi)
+        text = "Feeler does not make this command: ";
+    else if (motion.line > 0 && motion.purpose == FEELER_TOOL_CHANGE)
         text = fmt::format("Feeler stops before the way to the tool change, after line {}: ",
                            motion.line);
     else if (motion.line > 0)
         text = fmt::format("Feeler stops before line {}: ", motion.line);
     text += answer.reason;
     if (!answer.cure.empty()) text += " " + answer.cure;
-    return text + " Abort the program to go on.";
+    return text
+           + fmt::format(" Abort the {}, then clear the violation to go on.",
+                         is_mdi ? "command" : "program");
 }
 
 } // namespace
@@ -73,7 +77,8 @@ Guard::Guard(const core::Setup& setup, feeler_ring& ring, double unit, double fe
     cleared_ = feeler_load(&ring_.cleared);
     ended_ = feeler_load(&ring_.ended);
     is_latched_ = feeler_load(&ring_.latched) != 0;
-    if (is_latched_) check_.refuse_until_drop();
+    waits_refused_ = feeler_load(&ring_.refused) > feeler_load(&ring_.dropped);
+    if (is_latched_ || waits_refused_) check_.refuse_until_drop();
     check_.after_motion = [this](const LiveMotion& motion) {
         if (after_motion) after_motion(motion);
     };
@@ -106,7 +111,7 @@ void Guard::follow_operator() {
     const bool has_motions = feeler_load(&ring_.dropped) < feeler_load(&ring_.written);
     if (tell)
         tell(check_.is_refused() && has_motions
-                 ? "Feeler: the violation is cleared. Abort the program to go on."
+                 ? "Feeler: the violation is cleared. Abort the program or command to go on."
                  : "Feeler: the violation is cleared.");
 }
 
@@ -119,9 +124,12 @@ bool Guard::may_permit(const feeler_segment& motion) {
         reason_ = why;
         since_ = now;
     }
-    // What passes at once is no news for the operator.
-    if (reason_ == told_ || (!reason_.empty() && now - since_ < news_after)) return reason_.empty();
+    // What passes at once is no news for the operator. What was aborted and is tried again is.
+    const uint64_t dropped = feeler_load(&ring_.dropped);
+    const bool is_news = reason_ != told_ || (!reason_.empty() && dropped != told_at_drop_);
+    if (!is_news || (!reason_.empty() && now - since_ < news_after)) return reason_.empty();
     told_ = reason_;
+    told_at_drop_ = dropped;
     if (tell)
         tell(told_.empty() ? "Feeler: motions are permitted again." : "Feeler holds: " + told_);
     return reason_.empty();
@@ -147,9 +155,13 @@ void Guard::permit(uint64_t number) {
 bool Guard::step() {
     constexpr size_t cuts_at_a_time = 16;
     feeler_store(&ring_.alive, ring_.alive + 1);
-    if (!std::exchange(has_said_latch_, true) && is_latched_ && tell)
-        tell("Feeler: an earlier violation is not cleared yet, so only motions that lose no "
-             "clearance are permitted.");
+    if (!std::exchange(has_said_latch_, true) && tell) {
+        if (is_latched_)
+            tell("Feeler: an earlier violation is not cleared yet, so only motions that lose no "
+                 "clearance are permitted.");
+        else if (waits_refused_)
+            tell("Feeler: what waits was refused before. Abort the program or command to go on.");
+    }
     follow_operator();
     const uint64_t next = ring_.read + 1;
     if (feeler_load(&ring_.written) < next) {
@@ -180,7 +192,8 @@ void Guard::judge(const LiveMotion& motion) {
         ++refused_;
         is_latched_ = true;
         feeler_store(&ring_.latched, 1);
-        if (tell) tell(refusal_text(motion, answer));
+        feeler_store(&ring_.refused, motion.number);
+        if (tell) tell(refusal_text(motion, answer, is_mdi && is_mdi()));
         if (after_refusal) after_refusal(motion, answer);
     }
 }

@@ -41,6 +41,8 @@ public:
     /// Why a motion may not be permitted now, such as a work offset that differs from the set-up;
     /// empty if there is no reason. The motion waits as long as there is one.
     std::function<std::string(const feeler_segment&)> objection;
+    /// Whether the operator gives commands by MDI, so that lines of a program mean nothing to him.
+    std::function<bool()> is_mdi;
     /// For the operator: what holds the machine, and that it is over.
     std::function<void(const std::string&)> tell;
     /// After each motion that was refused, in mm.
@@ -77,9 +79,11 @@ private:
     uint64_t cleared_ = 0, ended_ = 0;
     std::string reason_, told_; // why nothing is permitted now; and what the operator knows of it
     int64_t since_ = 0;         // milliseconds
+    uint64_t told_at_drop_ = 0; // after this motion was dropped
     uint64_t session_ = 0, last_permit_ = 0;
     bool has_begun_ = false, is_disturbed_ = false;
     bool has_said_latch_ = false;
+    bool waits_refused_ = false; // what an earlier guard has refused, and the operator not aborted
     uint64_t permitted_ = 0, refused_ = 0;
     PermitTimes times_;
 };

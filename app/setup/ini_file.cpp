@@ -241,8 +241,10 @@ core::Result<IniFile> read_ini(const std::string& path) {
         if (text.starts_with("#INCLUDE"))
             return tl::unexpected(core::Error{core::ErrorCode::unsupported,
                                               {.line = static_cast<uint32_t>(line)},
-                                              "#INCLUDE is not supported; give the file that has "
-                                              "the sections RS274NGC, EMCIO and TRAJ",
+                                              "#INCLUDE is not supported; give the file that "
+                                              "LinuxCNC writes when it starts, with the included "
+                                              "ones in it: "
+                                                  + path + ".expanded",
                                               path});
         if (text.empty() || text[0] == '#' || text[0] == ';') continue;
         if (text[0] == '[') {

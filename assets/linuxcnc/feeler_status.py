@@ -47,6 +47,7 @@ def status_of(stat):
         "tool": stat.tool_in_spindle,
         "tool_length": length,
         "homed": all(stat.homed[: stat.joints]),
+        "mdi": stat.task_mode == linuxcnc.MODE_MDI,
     }
 
 
@@ -69,6 +70,8 @@ def main():
             stat.poll()
         except linuxcnc.error:
             return  # LinuxCNC has ended
+        if not stat.ini_filename:
+            continue  # it has not told its status yet
         now = status_of(stat)
         if now != last or is_asked:
             print(json.dumps(now), flush=True)

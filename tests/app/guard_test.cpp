@@ -31,8 +31,11 @@ namespace app_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 /// A block of aluminium of 100 x 60 x 20 in the middle of G54, a clamp beside it, an end mill of
 /// 10 mm that is 100 mm long. G54 is 200 below the gauge line at home, so the tip is at machine
@@ -244,7 +247,8 @@ TEST_F(GuardedMachine, PermitsNothingFromAViolationOn) {
     machine_.rapid(-60, 0, 20);
     EXPECT_EQ(permitted(), safe);
     ASSERT_EQ(told_.size(), 1U);
-    EXPECT_THAT(told_[0], AllOf(HasSubstr("line 3"), HasSubstr("clamp"), HasSubstr("Abort")));
+    EXPECT_THAT(told_[0], AllOf(HasSubstr("line 3"), HasSubstr("clamp"),
+                                EndsWith("Abort the program, then clear the violation to go on.")));
     EXPECT_EQ(machine_.ring->latched, 1U);
     EXPECT_EQ(machine_.ring->read, 4U); // so the ring does not fill up
 }
@@ -993,6 +997,55 @@ TEST_F(GuardedMachine, WaitsWhileThereIsAnObjection) {
     EXPECT_EQ(permitted(), 1U);
 }
 
+/// Who aborts and tries again is told again.
+TEST_F(GuardedMachine, TellsWhatHoldsAgainAfterAnAbort) {
+    guard_.objection = [&](const feeler_segment&) { return "G54 X differs."; };
+    machine_.rapid(0, 0, 30);
+    while (told_.empty()) guard_.step();
+    catch_up();
+    EXPECT_THAT(told_, ElementsAre("Feeler holds: G54 X differs."));
+    machine_.abort_at_rest();
+    catch_up();
+    machine_.rapid(0, 0, 20);
+    catch_up();
+    EXPECT_THAT(told_, ElementsAre("Feeler holds: G54 X differs.", "Feeler holds: G54 X differs."));
+}
+
+TEST_F(GuardedMachine, NamesNoLineOfAProgramInMdi) {
+    guard_.is_mdi = [] { return true; };
+    machine_.rapid(-60, 0, 30);
+    machine_.rapid(54, 0, 20);
+    permitted();
+    ASSERT_EQ(told_.size(), 1U);
+    EXPECT_THAT(told_[0],
+                AllOf(StartsWith("Feeler does not make this command: "), Not(HasSubstr("line"))));
+}
+
+/// What was refused, and not aborted, does not start to move when a guard is started again.
+TEST_F(GuardedMachine, StillRefusesWhatAnEarlierGuardHasRefused) {
+    machine_.rapid(-60, 0, 30);
+    const uint64_t safe = machine_.rapid(50, 0, 20);
+    machine_.rapid(54, 0, 20);
+    EXPECT_EQ(permitted(), safe);
+    machine_.move();
+    machine_.ring->cleared = 1;
+    catch_up();
+    EXPECT_EQ(machine_.ring->latched, 0U);
+    told_.clear();
+    app::SetupFile corrected = setup_of(setup_text);
+    corrected.setup.fixtures.clear();
+    app::Guard other(corrected.setup, *machine_.ring, 1.0, 0.1);
+    listen(other);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), safe);
+    EXPECT_THAT(told_, ElementsAre("Feeler: what waits was refused before. Abort the program or "
+                                   "command to go on."));
+    machine_.abort_at_rest();
+    machine_.rapid(54, 0, 20);
+    check_all(other);
+    EXPECT_EQ(machine_.permitted(), machine_.ring->written);
+}
+
 /// An earlier guard may have read motions that it did not permit.
 TEST_F(GuardedMachine, TakesOverFromAGuardThatWasKilled) {
     machine_.rapid(-60, 0, 30);
@@ -1224,8 +1277,9 @@ TEST(LiveControl, ComparesOffsetsAndLengths) {
 
 TEST(LiveControl, ReadsTheStatus) {
     const auto state = app::read_control_state(
-        R"({"work_offset": 3, "origin": [1, 2, 3, 4, 5, 6, 7, 8, 9], "rotation": 0.5, "tool": 4, "tool_length": 80.25, "homed": true})");
+        R"({"work_offset": 3, "origin": [1, 2, 3, 4, 5, 6, 7, 8, 9], "rotation": 0.5, "tool": 4, "tool_length": 80.25, "homed": true, "mdi": true})");
     ASSERT_TRUE(state.has_value());
+    EXPECT_TRUE(state->is_mdi);
     EXPECT_EQ(state->work_offset, 3);
     EXPECT_EQ(state->origin[8], 9.0);
     EXPECT_EQ(state->tool, 4);

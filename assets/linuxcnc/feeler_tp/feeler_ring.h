@@ -112,7 +112,8 @@ struct feeler_ring {
      * they are rounded is known. */
     double feed_tolerance;
     double turn_tolerance; /* the same for motions of axes besides X, Y and Z, at most */
-    uint64_t reserved_too[7];
+    uint64_t refused;      /* number of the motion that was refused last */
+    uint64_t reserved_too[6];
 
     struct feeler_segment segment[FEELER_RING_SEGMENTS]; /* number n at n % FEELER_RING_SEGMENTS */
 };

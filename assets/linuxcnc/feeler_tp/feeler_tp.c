@@ -165,7 +165,7 @@ static uint64_t last_alive;
 static long long alive_at; /* when the guard gave its last sign of life, nanoseconds */
 static long long const second = 1000000000LL;
 static long long waits_since; /* until now no motion has waited without a guard */
-static int has_said_why;
+static int has_said_why, has_said_end;
 
 static void copy_pose(double *to, EmcPose const *pose) {
     double const values[9] = {pose->tran.x, pose->tran.y, pose->tran.z, pose->a, pose->b,
@@ -594,6 +594,16 @@ static void release_permitted(TP_STRUCT *tp) {
     }
 }
 
+/* Says once that the guard has ended while the machine still makes what it has permitted. */
+static void say_what_still_moves(TP_STRUCT *tp, long long now) {
+    if (*pins->guard_alive || ring->alive == 0) {
+        has_said_end = 0;
+    } else if (!has_said_end && now - alive_at > 2 * second && !real_tpIsDone(tp)) {
+        has_said_end = 1;
+        rtapi_print_msg(RTAPI_MSG_ERR, "Feeler: feeler guard has ended or does not answer. The machine makes what it has permitted, and then stops\n");
+    }
+}
+
 /* Says once that motions wait because no guard answers. */
 static void say_why_nothing_moves(long long now) {
     if (!*pins->holding || *pins->guard_alive) {
@@ -614,6 +624,7 @@ static void show_state(TP_STRUCT *tp) {
     *pins->latched = feeler_load(&ring->latched) != 0;
     *pins->holding =
         motion_count > 0 && real_tpIsDone(tp) && first_motion()->number > last_permitted();
+    say_what_still_moves(tp, now);
     say_why_nothing_moves(now);
     if (motion_count > 0) *pins->line = first_motion()->tag.fields[GM_FIELD_LINE_NUMBER];
     if (*pins->clear && !was_clear_pressed) feeler_store(&ring->cleared, ring->cleared + 1);
