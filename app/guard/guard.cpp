@@ -18,7 +18,7 @@ constexpr double turn_tolerance = 0.02; // mm
 std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer, bool is_mdi) {
     std::string text = "Feeler stops before the next motion: ";
     if (is_mdi)
-        text = "Feeler does not make this command: ";
+        text = "Feeler stops before this command: ";
     else if (motion.line > 0 && motion.purpose == FEELER_TOOL_CHANGE)
         text = fmt::format("Feeler stops before the way to the tool change, after line {}: ",
                            motion.line);

@@ -1018,7 +1018,7 @@ TEST_F(GuardedMachine, NamesNoLineOfAProgramInMdi) {
     permitted();
     ASSERT_EQ(told_.size(), 1U);
     EXPECT_THAT(told_[0],
-                AllOf(StartsWith("Feeler does not make this command: "), Not(HasSubstr("line"))));
+                AllOf(StartsWith("Feeler stops before this command: "), Not(HasSubstr("line"))));
 }
 
 /// What was refused, and not aborted, does not start to move when a guard is started again.
