@@ -390,7 +390,19 @@ def survives_a_guard_that_is_killed(m):
             break
         m.start_guard()
     m.abort()
-    m.stop_guard()
+    m.guard.kill()
+    m.guard.wait()
+    m.start_guard()
+    m.mdi("G0 Z20")
+    m.wait_at_rest()
+    m.messages.clear()
+    m.mdi("G1 X-60 F1000")  # takes longer than the message needs
+    m.wait(lambda s: not s.inpos and pin("feeler-tp.holding") == "FALSE", "it moves")
+    m.guard.kill()
+    m.guard.wait()
+    m.wait_told("feeler guard has ended")
+    expect(not m.status.inpos, "it is told only when it has stopped")
+    m.wait_at_rest()
 
 
 @scenario
