@@ -256,14 +256,7 @@ void GuardRun::open_log() {
 
 void GuardRun::tell(const std::string& text) {
     print_note(text + "\n");
-    // LinuxCNC's messages hold 255 characters.
-    constexpr size_t most = 250;
-    for (std::string rest = text; !rest.empty();) {
-        const size_t blank = rest.size() <= most ? rest.size() : rest.rfind(' ', most);
-        const size_t end = blank == std::string::npos || blank == 0 ? most : blank;
-        status_.say(rest.substr(0, end));
-        rest.erase(0, blank == end ? end + 1 : end);
-    }
+    for (const std::string& part : messages_of(text)) status_.say(part);
 }
 
 /// Whether the program that asks for the status runs. It is started again if it has ended.

@@ -33,6 +33,24 @@ std::string refusal_text(const feeler_segment& motion, const LiveAnswer& answer,
 
 } // namespace
 
+std::vector<std::string> messages_of(const std::string& text) {
+    constexpr size_t most = 250;
+    std::vector<std::string> messages;
+    std::string rest = text;
+    while (rest.size() > most) {
+        const size_t sentence = rest.rfind(". ", most - 1), blank = rest.rfind(' ', most);
+        size_t end = most;
+        if (sentence != std::string::npos)
+            end = sentence + 1;
+        else if (blank != std::string::npos && blank > 0)
+            end = blank;
+        messages.push_back(rest.substr(0, end));
+        rest.erase(0, rest[end] == ' ' ? end + 1 : end);
+    }
+    if (!rest.empty()) messages.push_back(rest);
+    return messages;
+}
+
 std::string why_unknown(const feeler_ring& ring) {
     if (__atomic_load_n(&ring.magic, __ATOMIC_ACQUIRE) != FEELER_RING_MAGIC)
         return "feeler_tp is not loaded";

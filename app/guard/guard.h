@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "app/guard/live_check.h"
 
@@ -90,6 +91,10 @@ private:
 
 /// Makes this process the guard of the ring. False if another one is that and still runs.
 bool claim(feeler_ring& ring);
+
+/// A text as messages of LinuxCNC, which hold 255 characters: divided at the ends of sentences, or
+/// else between words.
+std::vector<std::string> messages_of(const std::string& text);
 
 /// Why a ring is of another kind than this program knows; empty if it is not.
 std::string why_unknown(const feeler_ring& ring);

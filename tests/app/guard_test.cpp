@@ -1275,6 +1275,17 @@ TEST(LiveControl, ComparesOffsetsAndLengths) {
     EXPECT_THAT(app::difference(setup, control, 1.0, 0.01), HasSubstr("Tool 3"));
 }
 
+TEST(LiveControl, GetsLongTextsInSentences) {
+    const std::string first(150, 'a'), second(120, 'b'), words = "ccc " + std::string(248, 'd');
+    EXPECT_THAT(app::messages_of("Short. Enough."), ElementsAre("Short. Enough."));
+    EXPECT_THAT(app::messages_of(first + ". X. " + second + ". Y."),
+                ElementsAre(first + ". X.", second + ". Y."));
+    EXPECT_THAT(app::messages_of(words + " e"), ElementsAre("ccc", std::string(248, 'd') + " e"));
+    EXPECT_THAT(app::messages_of(std::string(260, 'f')),
+                ElementsAre(std::string(250, 'f'), std::string(10, 'f')));
+    EXPECT_TRUE(app::messages_of("").empty());
+}
+
 TEST(LiveControl, ReadsTheStatus) {
     const auto state = app::read_control_state(
         R"({"work_offset": 3, "origin": [1, 2, 3, 4, 5, 6, 7, 8, 9], "rotation": 0.5, "tool": 4, "tool_length": 80.25, "homed": true, "mdi": true})");
