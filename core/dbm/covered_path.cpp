@@ -49,20 +49,34 @@ bool passes(const Move& move, const Vec3& p) {
     return glm::dot(apart, apart) <= move.near * move.near;
 }
 
+/// The square of the distance, as seen along Z, of a point from the positions of a move by `by`
+/// that begins at the origin: of those above which it is at one of these heights. Infinite if none
+/// is.
+double squared_distance_beside(const Vec3& p, const Vec3& by, const Interval& heights) {
+    // These positions: first .. last of 0 .. 1.
+    double first = 0.0, last = 1.0;
+    const double low = p.z - heights.upper, high = p.z - heights.lower;
+    if (by.z > 0.0) {
+        first = std::max(first, low / by.z);
+        last = std::min(last, high / by.z);
+    } else if (by.z < 0.0) {
+        first = std::max(first, high / by.z);
+        last = std::min(last, low / by.z);
+    } else if (low > 0.0 || high < 0.0) {
+        return infinity;
+    }
+    if (first > last) return infinity;
+    const double length = by.x * by.x + by.y * by.y;
+    const double along = p.x * by.x + p.y * by.y;
+    const double t = length > 0.0 ? std::clamp(along / length, first, last) : first;
+    const double x = p.x - t * by.x, y = p.y - t * by.y;
+    return x * x + y * y;
+}
+
 /// Whether the tip at `p` is in the cut of the move: above a position that is near enough.
 bool covers(const Move& move, const Vec3& p) {
-    const Vec3 q = move.from, by = move.to - move.from;
-    // The positions of the move that are not above p: first .. last of 0 .. 1.
-    double first = 0.0, last = 1.0;
-    if (by.z > 0.0) last = std::min(last, (p.z - q.z) / by.z);
-    if (by.z < 0.0) first = std::max(first, (p.z - q.z) / by.z);
-    if (by.z == 0.0 && q.z > p.z) return false;
-    if (first > last) return false;
-    const double length = by.x * by.x + by.y * by.y;
-    const double along = (p.x - q.x) * by.x + (p.y - q.y) * by.y;
-    const double t = length > 0.0 ? std::clamp(along / length, first, last) : first;
-    const double x = p.x - q.x - t * by.x, y = p.y - q.y - t * by.y;
-    return x * x + y * y <= move.near * move.near;
+    return squared_distance_beside(p - move.from, move.to - move.from, {0.0, infinity})
+           <= move.near * move.near;
 }
 
 /// A search among the candidate moves.
@@ -171,18 +185,18 @@ public:
             clear_[axis] = (radius + question.sideways) * across;
         }
         box_ = stock.outer_box;
-        add_moves(stock, radius - rounding);
+        add_cuts(stock, radius - rounding);
     }
 
     /// Whether all of the part's axis is covered on the whole path.
     bool everything() {
-        std::vector<size_t> sets(6 + moves_.size());
+        std::vector<size_t> sets(6 + cuts_.size());
         std::iota(sets.begin(), sets.end(), size_t(0));
         return cell({0.0, 1.0}, heights_, sets);
     }
 
 private:
-    struct Move {
+    struct Cut {
         Vec3 start, path, up; // of the part, in the frame of the cutter where it starts
         Vec3 by;              // of the cutter
         Interval heights;     // in which it is wide enough
@@ -190,7 +204,7 @@ private:
         Aabb axis;            // a box around its axis at these heights, in the stock's frame
     };
 
-    void add_moves(const CutModel& stock, double radius) {
+    void add_cuts(const CutModel& stock, double radius) {
         const double parallel = question_.gap > 0.0 ? 0.02 : 1e-9; // radians
         const Vec3 up = question_.orientation[2];
         const Aabb flutes = bounds(question_.flutes);
@@ -207,24 +221,24 @@ private:
             if (error >= question_.sideways) continue;
             for (const Cutter::Piece& piece : sweep.cutter->pieces)
                 if (const auto heights = heights_of_radius(piece.within, radius - error))
-                    add_move(sweep, *heights, question_.sideways - error);
+                    add_cut(sweep, *heights, question_.sideways - error);
         }
     }
 
     /// Adds what a move of a cutter covers that is wide enough between two heights.
-    void add_move(const CutterSweep& sweep, const Interval& heights, double near) {
+    void add_cut(const CutterSweep& sweep, const Interval& heights, double near) {
         const Mat3 inverse = glm::transpose(sweep.orientation);
-        Move move{.up = inverse * question_.orientation[2],
-                  .by = inverse * (sweep.to - sweep.from),
-                  .heights = {heights.lower - rounding, heights.upper + rounding},
-                  .near = near};
+        Cut cut{.up = inverse * question_.orientation[2],
+                .by = inverse * (sweep.to - sweep.from),
+                .heights = {heights.lower - rounding, heights.upper + rounding},
+                .near = near};
         for (const Vec3& tip : {sweep.from, sweep.to})
             for (const double height : {heights.lower, heights.upper})
-                move.axis.extend(tip + height * sweep.orientation[2]);
+                cut.axis.extend(tip + height * sweep.orientation[2]);
         for (const Way& way : ways_) {
-            move.start = inverse * (way.from - sweep.from);
-            move.path = inverse * (way.to - way.from);
-            moves_.push_back(move);
+            cut.start = inverse * (way.from - sweep.from);
+            cut.path = inverse * (way.to - way.from);
+            cuts_.push_back(cut);
         }
     }
 
@@ -253,25 +267,9 @@ private:
             return set % 2 == 0 ? at + clear_[axis] <= box_.min[axis]
                                 : at - clear_[axis] >= box_.max[axis];
         }
-        const Move& move = moves_[set - 6];
-        const Vec3 p = move.start + t * move.path + h * move.up;
-        double first = 0.0, last = 1.0;
-        const double low = p.z - move.heights.upper, high = p.z - move.heights.lower;
-        if (move.by.z > 0.0) {
-            first = std::max(first, low / move.by.z);
-            last = std::min(last, high / move.by.z);
-        } else if (move.by.z < 0.0) {
-            first = std::max(first, high / move.by.z);
-            last = std::min(last, low / move.by.z);
-        } else if (low > 0.0 || high < 0.0) {
-            return false;
-        }
-        if (first > last) return false;
-        const double length = move.by.x * move.by.x + move.by.y * move.by.y;
-        const double along = p.x * move.by.x + p.y * move.by.y;
-        const double s = length > 0.0 ? std::clamp(along / length, first, last) : first;
-        const double x = p.x - s * move.by.x, y = p.y - s * move.by.y;
-        return x * x + y * y <= move.near * move.near;
+        const Cut& cut = cuts_[set - 6];
+        const Vec3 p = cut.start + t * cut.path + h * cut.up;
+        return squared_distance_beside(p, cut.by, cut.heights) <= cut.near * cut.near;
     }
 
     /// Whether a part of path and heights is covered: by one set with all four corners, which as
@@ -288,7 +286,7 @@ private:
         unsigned any = 0;
         bool has_start = false, has_end = false, has_below = false, has_above = false;
         for (const size_t set : sets) {
-            if (set >= 6 && !overlaps(moves_[set - 6].axis, here)) continue;
+            if (set >= 6 && !overlaps(cuts_[set - 6].axis, here)) continue;
             if (++tests_ > most_tests) return false;
             near.push_back(set);
             unsigned in = 0;
@@ -329,7 +327,7 @@ private:
     Interval heights_;
     Aabb box_;
     Vec3 clear_ = Vec3(0.0); // of the axis from each side of the box
-    std::vector<Move> moves_;
+    std::vector<Cut> cuts_;
     size_t tests_ = 0;
 };
 

@@ -39,7 +39,7 @@ bool runs_in_own_cut(const SweepLog& log, const Aabb& box, const PathQuery& ques
 /// A straight move of a part of a tool that is compared with earlier cuts.
 struct PartPathQuery {
     const RevolvedProfile& part;           // its heights count from the tip
-    const RevolvedProfile& flutes;         // of the same tool
+    const RevolvedProfile& flutes;         // cutters that reach farther may be overlooked
     Vec3 from = Vec3(0.0), to = Vec3(0.0); // positions of the tip
     double sideways = 0.0;                 // allowed distance of its axis from that of a cutter
     Mat3 orientation = Mat3(1.0);          // stock_from_tool
@@ -58,7 +58,7 @@ struct PartPathQuery {
 ///          `sideways` on all sides. With a gap, cutters may also be out of parallel by 0.02
 ///          radians. False proves nothing.
 /// Cost:    the number of logged moves near the path times the number of parts into which path
-///          and heights are divided; at most 100,000 of these products, then false.
+///          and heights are divided. It gives up after some 100,000 of these.
 bool stays_in_own_cut(const CutModel& stock, const PartPathQuery& question);
 
 } // namespace core

@@ -124,6 +124,7 @@ bool follows_flutes(const Setup& setup, const ToolAssembly& tool, const MovingBo
     constexpr int deepest = 10;
     if (!part.profile || !leg.straight) return false;
     const RelativeLeg way = leg_against(setup, {}, part, leg);
+    if (way.positions.size() > 2) return false;
     if (way.turns && way.error > 0.25 * own.sideways) {
         if (depth == deepest) return false;
         const std::array<Leg, 2> parts = halves(leg);

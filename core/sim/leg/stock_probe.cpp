@@ -119,12 +119,13 @@ bool StockProbe::retraces(const MovingBody& body, const RelativeLeg& leg, const 
     // A shank does not cut, so it may have been inside the stock on the same path.
     if (body.kind != PartKind::flutes)
         return body.profile && fits_own_cut(context_.tool, body.kind)
-               && stays_in_own_cut(stock, {.part = *body.profile,
-                                           .flutes = context_.tool.parts[0].profile,
-                                           .from = leg.positions.front(),
-                                           .to = leg.positions.back(),
-                                           .sideways = 0.5 * contact_depth(allowance) - leg.error,
-                                           .orientation = leg.orientation});
+               && stays_in_own_cut(
+                   stock, {.part = *body.profile,
+                           .flutes = context_.tool.parts[0].profile,
+                           .from = leg.positions.front(),
+                           .to = leg.positions.back(),
+                           .sideways = contact_shrink(allowance, *body.profile) - leg.error,
+                           .orientation = leg.orientation});
     PathQuery path{.flutes = context_.tool.parts[0].profile,
                    .from = leg.positions.front(),
                    .to = leg.positions.back(),
