@@ -139,16 +139,18 @@ Result<CutModel> make_cut_model(Solid solid, double spacing, double memory_limit
 std::vector<uint32_t> tips_near(const CutModel& model, const Aabb& box, double reach) {
     std::vector<uint32_t> numbers;
     if (model.columns.u_count() == 0) return numbers;
+    // Neighbouring tiles have many moves in common.
+    std::vector<std::pair<uint32_t, uint32_t>> ranges; // first .. last
     for_tiles(cells_in(model, box.grown(reach)), model.column_boxes, [&](size_t tile) {
         const SharedLog<SweepRun>& runs = model.history[tile];
-        for (size_t k = 0; k < runs.size(); ++k) {
-            if (!overlaps(runs[k].paths, box)) continue;
-            for (uint32_t number = runs[k].first; number <= runs[k].last; ++number)
-                if (overlaps(model.log.path_box(number), box)) numbers.push_back(number);
-        }
+        for (size_t k = 0; k < runs.size(); ++k)
+            if (overlaps(runs[k].paths, box)) ranges.emplace_back(runs[k].first, runs[k].last);
     });
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    std::sort(ranges.begin(), ranges.end());
+    uint32_t next = 0;
+    for (const auto& [first, last] : ranges)
+        for (next = std::max(next, first); next <= last; ++next)
+            if (overlaps(model.log.path_box(next), box)) numbers.push_back(next);
     return numbers;
 }
 

@@ -48,6 +48,7 @@ spindle = "clockwise"
 
 BALL = 'shape = "ball"\ndiameter = 6\nflute_length = 12\nshank = [[6, 6, 20]]\nholder = [[40, 40, 30]]'
 SHORT_BALL = 'shape = "ball"\ndiameter = 6\nflute_length = 4\nshank = [[6, 6, 28]]\nholder = [[40, 40, 30]]'
+SHORT_FLAT = 'shape = "flat"\ndiameter = 12\nflute_length = 4\nshank = [[12, 12, 26]]\nholder = [[40, 40, 30]]'
 FLAT = 'shape = "flat"\ndiameter = 8\nflute_length = 20\nshank = [[8, 8, 20]]\nholder = [[40, 40, 30]]'
 DRILL = 'shape = "drill"\ndiameter = 5\npoint_deg = 118\nflute_length = 30\nshank = [[5, 5, 20]]\nholder = [[40, 40, 30]]'
 
@@ -183,6 +184,7 @@ def scenes():
         ("second-pass", raster(1200, 2), setup(BALL, 0.5)),
         ("shank-rubs", raster(300), setup(SHORT_BALL, 0.2, 3)),
         ("helix", helix(), setup(FLAT, 0.5)),
+        ("bore", helix(), setup(SHORT_FLAT, 0.5)),
         ("holes", holes(), setup(DRILL, 0.5)),
         ("pocket", pocket(), setup(FLAT, 0.3)),
         ("tilted", start_of_tilted_faces(), tilted),
