@@ -121,8 +121,8 @@ struct BlockRun {
 
     /// `is_spread`: the legs are hulls because the start or the end of the motion is uncertain.
     void check_path(const Motion& motion, const Path& path, bool is_spread);
-    /// Whether the body of a pair with the stock moves where its tool has cut, so that both deviate
-    /// alike; `rises`: all legs of the block go upwards.
+    /// Whether the body of a pair with the stock moves where its tool has cut. That both deviate
+    /// alike there is a premise. `rises`: all legs of the block go upwards.
     bool follows_own_cut(const PairClearance& pair, bool rises);
     /// Whether it does not matter for a pair what rounded corners have left of the stock: on all
     /// legs of the block it at most touches the raw stock, cuts, or leaves what it has just cut.
