@@ -18,6 +18,15 @@ size_t SweepLog::index_of(uint32_t mark) const {
     return marks_[from].first + (mark - marks_[from].mark);
 }
 
+uint32_t SweepLog::mark(size_t i) const {
+    size_t from = 0, to = marks_.size(); // the last run that begins at or before `i`
+    while (to - from > 1) {
+        const size_t middle = from + (to - from) / 2;
+        (marks_[middle].first <= i ? from : to) = middle;
+    }
+    return marks_[from].mark + static_cast<uint32_t>(i) - marks_[from].first;
+}
+
 void SweepLog::push_back(const CutterSweep& sweep, uint32_t mark) {
     if (marks_.empty() || mark != last_mark() + 1)
         marks_.push_back({static_cast<uint32_t>(entries_.size()), mark});
@@ -51,6 +60,15 @@ void SweepLog::cut_back(const Sizes& sizes) {
     positions_.truncate(sizes.positions);
     entries_.truncate(sizes.entries);
     marks_.truncate(sizes.marks);
+}
+
+void SweepLog::keep_first(size_t moves) {
+    if (moves >= size()) return;
+    if (moves == 0) return cut_back({});
+    const Entry& last = entries_[moves - 1];
+    size_t runs = marks_.size();
+    while (marks_[runs - 1].first >= moves) --runs;
+    cut_back({last.attitude + size_t{1}, last.end + size_t{1}, moves, runs});
 }
 
 LoggedSweep SweepLog::operator[](size_t i) const {

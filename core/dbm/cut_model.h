@@ -93,6 +93,8 @@ public:
 
     /// The index of the move with a number, which must be in the log.
     size_t index_of(uint32_t mark) const;
+    /// The number of move `i`.
+    uint32_t mark(size_t i) const;
 
     /// The sizes of the lists within, for cut_back().
     struct Sizes {
@@ -103,6 +105,8 @@ public:
     }
     /// Removes the moves added since then.
     void cut_back(const Sizes& sizes);
+    /// Removes all but the first moves.
+    void keep_first(size_t moves);
 
     LoggedSweep operator[](size_t i) const;
     uint32_t block(size_t i) const { return entries_[i].block; }

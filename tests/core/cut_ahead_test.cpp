@@ -7,7 +7,7 @@
 
 #include "core/dbm/contour.h"
 #include "core/dbm/cut_ahead.h"
-#include "tests/support/convex_oracle.h"
+#include "tests/support/random_moves.h"
 #include "tests/support/stock_digest.h"
 #include "tests/support/stock_oracle.h"
 
@@ -15,47 +15,8 @@ namespace core {
 namespace {
 
 using test_support::cutters;
-using test_support::random_direction;
 using test_support::random_point;
-
-/// Random moves at a box: chains of short moves, jumps, moves far away, and tools in any direction.
-class RandomMoves {
-public:
-    RandomMoves(const Aabb& box, std::mt19937& rng) : box_(box), rng_(rng) {
-        for (const RevolvedProfile& flutes : cutters())
-            cutters_.push_back(std::make_shared<const Cutter>(make_cutter(flutes, 0.0)));
-        cutters_.push_back(std::make_shared<const Cutter>(make_cutter(cutters()[1], 0.15)));
-        at_ = random_point(box_.grown(2.0), rng_);
-    }
-
-    CutterSweep next() {
-        if (chance(0.1)) cutter_ = cutters_[rng_() % cutters_.size()];
-        if (chance(0.05))
-            orientation_ = chance(0.5) ? Mat3(1.0) : frame_along(random_direction(rng_));
-        if (chance(0.1)) at_ = random_point(box_.grown(chance(0.2) ? 60.0 : 3.0), rng_);
-        const Vec3 from = at_;
-        at_ += (chance(0.1) ? 8.0 : 0.8) * random_direction(rng_);
-        if (chance(0.3)) at_.z = from.z;
-        return {cutter_, from, at_, orientation_, ++block_};
-    }
-
-private:
-    bool chance(double p) { return std::uniform_real_distribution<double>(0, 1)(rng_) < p; }
-    static Mat3 frame_along(const Vec3& z) {
-        const Vec3 x =
-            glm::normalize(glm::cross(z, std::abs(z.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
-        return {x, glm::cross(z, x), z};
-    }
-
-    Aabb box_;
-    std::mt19937& rng_;
-    std::vector<std::shared_ptr<const Cutter>> cutters_;
-    std::shared_ptr<const Cutter> cutter_ =
-        std::make_shared<const Cutter>(make_cutter(cutters()[0], 0.0));
-    Mat3 orientation_ = Mat3(1.0);
-    Vec3 at_;
-    uint32_t block_ = 0;
-};
+using test_support::RandomMoves;
 
 /// Cuts all shards of a window on threads of their own.
 void cut_all(CutAhead& ahead, CutWindow& window) {

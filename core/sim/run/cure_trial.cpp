@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dbm/earlier_model.h"
 #include "core/motion/kinematics.h"
 #include "core/motion/path.h"
 #include "core/sim/moving_body.h"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double largest_shift = 100.0;     // mm
 constexpr size_t most_replayed = 2'000'000; // moves that are cut again at a time
+constexpr size_t few_moves = 1000;          // so many are cut again in all tiles
 constexpr double memory_fraction = 0.25;    // of the limit, that a second stock may take
 
 Motion shifted(Motion motion, size_t axis, double by) {
@@ -153,19 +155,26 @@ private:
 std::shared_ptr<const CutModel> stock_after(const Setup& setup, SimulatorState& state,
                                             size_t moves) {
     if (state.stock.log.size() == moves) return std::make_shared<CutModel>(state.stock);
-    std::shared_ptr<const CutModel> base = state.trials.stock;
-    if (!base || base->log.size() > moves) {
-        const double spacing = state.stock.lines.grid.spacing;
-        const double limit = memory_fraction * setup.memory_limit;
-        auto fresh = make_cut_model(state.stock.solid, spacing, limit);
-        if (!fresh) return nullptr;
-        base = std::make_shared<CutModel>(*std::move(fresh));
+    TrialMemory& trials = state.trials;
+    const bool is_near = trials.stock && trials.stock->log.size() <= moves
+                         && moves - trials.stock->log.size() <= few_moves;
+    if (is_near) {
+        auto replayed = std::make_shared<CutModel>(*trials.stock);
+        for (size_t i = replayed->log.size(); i < moves; ++i)
+            cut(*replayed, state.stock.log[i].sweep);
+        trials.stock = std::move(replayed);
+    } else {
+        if (!trials.raw) {
+            const double limit = memory_fraction * setup.memory_limit;
+            auto raw = make_cut_model(state.stock.solid, state.stock.lines.grid.spacing, limit);
+            if (!raw) return nullptr;
+            trials.raw = std::make_shared<const CutModel>(*std::move(raw));
+        }
+        auto earlier = earlier_model(state.stock, *trials.raw, moves, most_replayed);
+        if (!earlier) return nullptr;
+        trials.stock = std::make_shared<const CutModel>(*std::move(earlier));
     }
-    if (moves - base->log.size() > most_replayed) return nullptr;
-    auto replayed = std::make_shared<CutModel>(*base);
-    for (size_t i = base->log.size(); i < moves; ++i) cut(*replayed, state.stock.log[i].sweep);
-    state.trials.stock = replayed;
-    return replayed->log.size() == moves ? replayed : nullptr;
+    return trials.stock->log.size() == moves ? trials.stock : nullptr;
 }
 
 bool can_shift(const BlockEvents& block) {

@@ -34,7 +34,7 @@ struct PairStudy {
 /// The stock as it was when `moves` of its moves were logged; null if it cannot be had at
 /// reasonable cost.
 ///
-/// Cost: cuts again what was cut since the last call.
+/// Cost: cuts again what was cut since the last call, or where the moves since then have cut.
 std::shared_ptr<const CutModel> stock_after(const Setup& setup, SimulatorState& state,
                                             size_t moves);
 

@@ -23,6 +23,7 @@ struct Setup;
 
 /// What the trials of cures have used so far. A plain value.
 struct TrialMemory {
+    std::shared_ptr<const CutModel> raw;   // the uncut stock; empty: not needed yet
     std::shared_ptr<const CutModel> stock; // as it was before an earlier block; empty: none yet
     std::vector<Pair> studied;             // whose overlaps were measured or whose cures were tried
     size_t work = 0;                       // tests made by trials
