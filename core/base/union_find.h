@@ -17,10 +17,12 @@ public:
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    void join(uint32_t a, uint32_t b) {
+    /// Whether the numbers were in two sets, which are one now.
+    bool join(uint32_t a, uint32_t b) {
         a = root(a);
         b = root(b);
         parent_[std::max(a, b)] = std::min(a, b);
+        return a != b;
     }
 
 private:

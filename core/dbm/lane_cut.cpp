@@ -57,8 +57,8 @@ HWY_INLINE void for_layers(const ScanTile& tile, uint32_t layers, const Act& act
 
 /// The lines of a chunk on which the plan may sweep material of these layers.
 HWY_INLINE uint32_t lines_in_reach(const LanePlan& plan, const ScanTile& tile, size_t slot,
-                                   uint32_t layers, const double* u, double v) {
-    return bits_of(in_reach(plan, u, v, [&](const auto& may_hold) HWY_ATTR {
+                                   uint32_t layers, const double* u, double v, double less) {
+    return bits_of(in_reach(plan, u, v, less, [&](const auto& may_hold) HWY_ATTR {
         RowMask found = below(row_of(1.0), row_of(0.0));
         for_layers(tile, layers,
                    [&](size_t k) HWY_ATTR { found = found | may_hold(matter_of(tile, k, slot)); });
@@ -230,7 +230,9 @@ HWY_INLINE void for_chunks_in_reach(const LanePlan& plan, const TileTask& task,
             const size_t slot = static_cast<size_t>(row) * ScanTile::side + first;
             const uint32_t layers = layers_with_matter(tile, slot, range, mask_of(asked));
             if (layers == 0) continue;
-            const uint32_t lines = lines_in_reach(plan, tile, slot, layers, task.u + first, v);
+            const double less = task.grid ? 0.0 : safely_less; // as shared() does
+            const uint32_t lines =
+                lines_in_reach(plan, tile, slot, layers, task.u + first, v, less);
             if (lines != 0) act(row, first, slot, layers, lines);
         }
     }

@@ -10,6 +10,9 @@ namespace {
 /// ends.
 constexpr double least_move = 1e-10;
 
+/// An end of a swept segment as the lanes store it.
+double on_lattice(double x) { return std::nearbyint(x * ends_per_mm) * (1.0 / ends_per_mm); }
+
 /// Parameters common to a ball and a circle; `steep` is the inclination of the swept surface along
 /// the lines, 0 for a circle.
 CapsuleLanes capsule(const CutterSweep& sweep, int axis, double z0, double radius) {
@@ -59,8 +62,14 @@ CapsuleLanes upright_lanes(const CutterSweep& sweep, const ProfileElement& e) {
     CapsuleLanes c = capsule(sweep, 2, 0.0, e.r0);
     c.low_end = e.z0;
     c.high_end = e.z1;
-    c.reach_low += e.z0;
-    c.reach_high += e.z1;
+    c.level = c.by_a == 0.0;
+    if (c.level) {
+        c.reach_low = on_lattice(c.from_a + c.low_end);
+        c.reach_high = on_lattice(c.from_a + c.high_end);
+    } else {
+        c.reach_low += e.z0;
+        c.reach_high += e.z1;
+    }
     c.low_by_half = c.by_a < 0.0 ? c.per_length : -c.per_length;
     c.high_by_half = -c.low_by_half;
     if (c.length == 0.0) {
@@ -164,6 +173,7 @@ bool open_up(CapsuleLanes& c, double reached, double top) {
     if (reached < top) return false;
     c.opens_up = true;
     c.high_end = c.reach_high = reached;
+    if (c.level) c.reach_high = on_lattice(reached);
     return true;
 }
 

@@ -7,6 +7,10 @@
 
 namespace core {
 
+/// Ends of swept segments are multiples of 2.3e-10 mm: two moves that produce the same surface then
+/// give the same bits, and neither cuts a rounding error from the other's surface.
+constexpr double ends_per_mm = 4294967296.0; // 2^32
+
 /// A ball, or the circle of an upright cylinder seen from above, along one move: parameters for its
 /// intersection with the lines of one family. Coordinates: along the lines (a), and across them (u,
 /// v).
@@ -26,6 +30,7 @@ struct CapsuleLanes {
     bool opens_up;                // no stock above, so every segment may end at high_end
     double reach_low, reach_high; // bounds of the ball's centre or of the cylinder's ends
     double u_most, v_most;        // beyond these, another element covers this one
+    bool level; // a cylinder that does not move along the lines: its ends are exactly the reach
 };
 
 /// An upright cylinder crossed from the side: (a, s) is the plane of its circle, z the height.

@@ -109,12 +109,11 @@ HWY_ATTR Swept swept_one_by_one(const LanePlan& plan, const double* u, double v,
     return {{load(lower.data()), load(upper.data())}, row_of(1.0), row_of(1.0)};
 }
 
-/// Rounds ends to multiples of 2.3e-10 mm: two moves that produce the same surface then give the
-/// same bits, and neither cuts a rounding error from the other's surface.
+/// Rounds ends, see ends_per_mm.
 HWY_INLINE Row on_lattice(const Row& x) {
-    constexpr double per_mm = 4294967296.0; // 2^32
-    const Row scaled = x * per_mm;
-    return each<Row>([&](size_t k) HWY_ATTR { return hn::Round(scaled.part[k]); }) * (1.0 / per_mm);
+    const Row scaled = x * ends_per_mm;
+    return each<Row>([&](size_t k) HWY_ATTR { return hn::Round(scaled.part[k]); })
+           * (1.0 / ends_per_mm);
 }
 
 /// What the plan sweeps on a chunk of lines; lines that are not wanted may come out empty.
@@ -139,10 +138,12 @@ struct Reach {
     Row square;
     double low, high;
     RowMask met;
+    bool is_exact = false; // the segments are low .. high
 };
 
 /// Whether the range may contain material, allowing for rounding.
 HWY_INLINE RowMask may_hold(const Reach& reach, const Stretch& matter) {
+    if (reach.is_exact) return reach.met & overlap({row_of(reach.low), row_of(reach.high)}, matter);
     constexpr double slack = 1e-6; // mm^2: 1e-9 mm at the end of a tool of 1 m
     const Row off =
         most(most(row_of(reach.low) - matter.upper, matter.lower - reach.high), row_of(0.0));
@@ -154,8 +155,9 @@ HWY_INLINE Reach reach_of_ball(const CapsuleLanes& c, const Row& u, double v) {
     return {at.beyond - at.past * at.past, c.reach_low, c.reach_high, at.met};
 }
 
-HWY_INLINE Reach reach_of_upright(const CapsuleLanes& c, const Row& u, double v) {
-    return {row_of(0.0), c.reach_low, c.reach_high, sideways(c, u, v).met};
+/// Without exact ends, the floor and the slot that a level move has just made would be in reach.
+HWY_INLINE Reach reach_of_upright(const CapsuleLanes& c, const Row& u, double v, double less) {
+    return {row_of(0.0), c.reach_low + less, c.reach_high - less, sideways(c, u, v).met, c.level};
 }
 
 HWY_INLINE Reach reach_of_circles(const AcrossLanes& c, const Row& u, double v) {
@@ -167,15 +169,17 @@ HWY_INLINE Reach reach_of_circles(const AcrossLanes& c, const Row& u, double v) 
                 & at_most(z, row_of(c.z1 + std::max(0.0, c.by_z) + slack))};
 }
 
-/// Calls `act` with a reach of each ball and cylinder of the plan.
+/// Calls `act` with a reach of each ball and cylinder of the plan; exact ones are shortened by
+/// `less` at both ends.
 template <typename Act>
 HWY_INLINE void for_reaches(const LanePlan& plan, const double* u, const Row& at_u, double v,
-                            const Act& act) {
+                            double less, const Act& act) {
     for (size_t i = 0; i < plan.balls; ++i) {
         const CapsuleLanes& c = plan.ball[i];
         if (u[0] <= c.u_most && v <= c.v_most) act(reach_of_ball(c, at_u, v));
     }
-    for (size_t i = 0; i < plan.uprights; ++i) act(reach_of_upright(plan.upright[i], at_u, v));
+    for (size_t i = 0; i < plan.uprights; ++i)
+        act(reach_of_upright(plan.upright[i], at_u, v, less));
     for (size_t i = 0; i < plan.across; ++i) act(reach_of_circles(plan.sideways[i], at_u, v));
 }
 
@@ -185,7 +189,7 @@ HWY_INLINE Stretch loose_hull(const LanePlan& plan, const double* u, const Row& 
     constexpr double slack = 1e-6;
     Swept loose = empty_sweep();
     add_elements(plan, true, u, at_u, v, loose);
-    for_reaches(plan, u, at_u, v, [&](const Reach& reach) HWY_ATTR {
+    for_reaches(plan, u, at_u, v, 0.0, [&](const Reach& reach) HWY_ATTR {
         const RowMask met = reach.met & at_most(row_of(-slack), reach.square);
         const Row half = root(reach.square);
         unite_low(loose, met, row_of(reach.low) - half, row_of(1.0));
@@ -219,9 +223,10 @@ HWY_INLINE Within within_slabs(const LanePlan& plan, const Row& u, double v) {
 }
 
 /// The lines of a chunk on which the plan may sweep material; `holds(test)` runs a test of a
-/// segment over all material.
+/// segment over all material. `less`: the swept segments are shortened by it at both ends.
 template <typename Holds>
-HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, const Holds& holds) {
+HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, double less,
+                            const Holds& holds) {
     const RowMask all = at_most(row_of(0.0), row_of(0.0));
     const Row at_u = load(u);
     if (plan.has_slabs) {
@@ -234,7 +239,7 @@ HWY_INLINE RowMask in_reach(const LanePlan& plan, const double* u, double v, con
         return holds([&](const Stretch& matter) HWY_ATTR { return overlap(hull, matter); });
     }
     RowMask found = but_not(all, all);
-    for_reaches(plan, u, at_u, v, [&](const Reach& reach) HWY_ATTR {
+    for_reaches(plan, u, at_u, v, less, [&](const Reach& reach) HWY_ATTR {
         found =
             found | holds([&](const Stretch& matter) HWY_ATTR { return may_hold(reach, matter); });
     });

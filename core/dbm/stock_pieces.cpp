@@ -95,6 +95,52 @@ private:
     size_t next_ = 0;
 };
 
+/// The stretches of material on the lines along Z of a range, grouped by what hangs together
+/// within it.
+struct Stretches {
+    std::vector<uint32_t> first; // number of the first stretch of each line; one more at the end
+    UnionFind groups{0};
+    size_t group_count = 0;
+};
+
+Stretches stretches_in(const CutModel& model, const LineRange& range) {
+    const ScanLines& z = family(model, 2);
+    const auto width = static_cast<size_t>(range.u_last - range.u_first);
+    std::vector<LineView> lines;
+    lines.reserve(width * static_cast<size_t>(range.v_last - range.v_first));
+    Stretches all;
+    all.first.reserve(lines.capacity() + 1);
+    uint32_t count = 0;
+    for (int v = range.v_first; v < range.v_last; ++v)
+        for (int u = range.u_first; u < range.u_last; ++u) {
+            lines.push_back(z.line(u, v));
+            all.first.push_back(count);
+            count += static_cast<uint32_t>(lines.back().size());
+        }
+    all.first.push_back(count);
+    all.groups = UnionFind(count);
+    all.group_count = count;
+    const auto join = [&](RowOfLines& row, int step, size_t at, size_t next) {
+        for_overlaps(lines[at], lines[next], [&](size_t a, size_t b) {
+            if (row.hang_together(step, lines[at][a], lines[next][b]))
+                all.group_count -= all.groups.join(all.first[at] + static_cast<uint32_t>(a),
+                                                   all.first[next] + static_cast<uint32_t>(b));
+        });
+    };
+    for (int v = range.v_first; v < range.v_last; ++v) {
+        RowOfLines row(model, 0, v);
+        size_t at = static_cast<size_t>(v - range.v_first) * width;
+        for (int u = range.u_first; u + 1 < range.u_last; ++u, ++at) join(row, u, at, at + 1);
+    }
+    for (int u = range.u_first; u < range.u_last; ++u) {
+        RowOfLines row(model, 1, u);
+        auto at = static_cast<size_t>(u - range.u_first);
+        for (int v = range.v_first; v + 1 < range.v_last; ++v, at += width)
+            join(row, v, at, at + width);
+    }
+    return all;
+}
+
 } // namespace
 
 /// The material of a tile of lines along Z: its parts.
@@ -158,41 +204,9 @@ private:
 std::shared_ptr<PieceMap::Tile> PieceWork::parts_of(uint32_t number) const {
     const auto tile = std::make_shared<Tile>();
     const LineRange range = lines_of(number);
-    const int width = range.u_last - range.u_first;
-    std::array<LineView, ScanTile::lines> lines;
-    uint32_t count = 0;
-    tile->first.reserve(ScanTile::lines + 1);
-    for (int v = range.v_first; v < range.v_last; ++v)
-        for (int u = range.u_first; u < range.u_last; ++u) {
-            const size_t at = line_index(range, u, v);
-            lines[at] = z_.line(u, v);
-            tile->first.push_back(count);
-            count += static_cast<uint32_t>(lines[at].size());
-        }
-    tile->first.push_back(count);
-    UnionFind groups(count);
-    const auto join = [&](RowOfLines& row, int step, size_t at, size_t next) {
-        for_overlaps(lines[at], lines[next], [&](size_t a, size_t b) {
-            if (row.hang_together(step, lines[at][a], lines[next][b]))
-                groups.join(tile->first[at] + static_cast<uint32_t>(a),
-                            tile->first[next] + static_cast<uint32_t>(b));
-        });
-    };
-    for (int v = range.v_first; v < range.v_last; ++v) {
-        RowOfLines row(model_, 0, v);
-        for (int u = range.u_first; u + 1 < range.u_last; ++u) {
-            const size_t at = line_index(range, u, v);
-            join(row, u, at, at + 1);
-        }
-    }
-    for (int u = range.u_first; u < range.u_last; ++u) {
-        RowOfLines row(model_, 1, u);
-        for (int v = range.v_first; v + 1 < range.v_last; ++v) {
-            const size_t at = line_index(range, u, v);
-            join(row, v, at, at + static_cast<size_t>(width));
-        }
-    }
-    number_parts(*tile, range, groups);
+    Stretches all = stretches_in(model_, range);
+    tile->first = std::move(all.first);
+    number_parts(*tile, range, all.groups);
     return tile;
 }
 
@@ -469,6 +483,14 @@ std::optional<CommonHeights> single_segments(const ScanLines& lines, const LineR
 }
 
 } // namespace
+
+bool hangs_together_within(const CutModel& model, const Aabb& box) {
+    const ScanGrid& grid = model.lines.grid;
+    const auto [u_first, u_last] = lines_within(grid, 0, box.min.x, box.max.x, 1);
+    const auto [v_first, v_last] = lines_within(grid, 1, box.min.y, box.max.y, 1);
+    if (u_first > u_last || v_first > v_last) return true;
+    return stretches_in(model, {u_first, u_last + 1, v_first, v_last + 1}).group_count <= 1;
+}
 
 bool is_still_connected(const CutModel& model, const Aabb& box) {
     const ScanGrid& grid = model.lines.grid;

@@ -62,4 +62,12 @@ private:
 /// Cost:    some microseconds. False proves nothing.
 bool is_still_connected(const CutModel& model, const Aabb& box);
 
+/// Whether the material on the lines along Z within `box` and one line around it is connected
+/// there, as PieceMap::pieces() says. If all of the stock was connected before a cut within the
+/// box, it still is: a connection that led through the box enters and leaves this range on lines
+/// that the cut has not reached.
+///
+/// Cost:    some 20 ns for each line.
+bool hangs_together_within(const CutModel& model, const Aabb& box);
+
 } // namespace core

@@ -103,7 +103,7 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
     const auto between = [&](double low, double high) {
         return low + (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53);
     };
-    size_t parted = 0, doubts = 0;
+    size_t parted = 0, doubts = 0, together = 0;
     for (int round = 0; round < 8; ++round) {
         CutModel model = block_model(1.0);
         PieceMap followed;
@@ -135,6 +135,10 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
             if (!doubtful) {
                 EXPECT_LE(pieces.size(), before);
             }
+            if (before == 1 && hangs_together_within(model, box)) {
+                EXPECT_EQ(pieces.size(), 1u);
+                ++together;
+            }
             doubts += doubtful;
             EXPECT_EQ(nearby.pieces(model).size(), pieces.size()) << "followed by the shorter way";
             before = pieces.size();
@@ -152,6 +156,7 @@ TEST(StockPieces, AreTheSameWhetherFollowedOrLookedAtAfresh) {
     }
     EXPECT_GT(parted, 4u);
     EXPECT_LT(doubts, 150u); // of 200
+    EXPECT_GT(together, 10u);
 }
 
 TEST(StockPieces, AreNotInDoubtWhereARoofHangsOnTheSides) {
@@ -167,6 +172,7 @@ TEST(StockPieces, AreNotInDoubtWhereARoofHangsOnTheSides) {
         EXPECT_FALSE(is_still_connected(model, box));
         map.note_cut(model, box);
         EXPECT_FALSE(map.may_have_separated(model)) << i;
+        EXPECT_TRUE(hangs_together_within(model, box)) << i;
     }
     // Two cuts from above part the roof over a piece of the slot from the rest.
     for (const double x : {15.0, 45.0}) {
@@ -178,6 +184,9 @@ TEST(StockPieces, AreNotInDoubtWhereARoofHangsOnTheSides) {
         mill(model, 1.0, {15.0, y, -10.0}, {45.0, y, -10.0});
         map.note_cut(model, {{14, y - 1, -10}, {46, y + 1, 20}});
         EXPECT_EQ(map.may_have_separated(model), y > 20.0);
+        if (y > 20.0) {
+            EXPECT_FALSE(hangs_together_within(model, {{14, y - 1, -10}, {46, y + 1, 20}}));
+        }
     }
     EXPECT_EQ(map.pieces(model).size(), 2u);
 }

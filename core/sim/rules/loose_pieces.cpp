@@ -79,7 +79,9 @@ std::vector<Finding> track_pieces(const Setup& setup, const std::vector<bool>& m
     tracker.map.note_cut(stock, box);
     if (is_still_connected(stock, box)) return findings;
     // With several pieces, one may have become a crumb.
-    if (tracker.known == 1 && !tracker.map.may_have_separated(stock)) return findings;
+    if (tracker.known == 1
+        && (hangs_together_within(stock, box) || !tracker.map.may_have_separated(stock)))
+        return findings;
     const std::vector<StockPiece> pieces = tracker.map.pieces(stock);
     size_t fresh = pieces.size() > tracker.known ? pieces.size() - tracker.known : 0;
     tracker.known = pieces.size();
