@@ -27,6 +27,7 @@ void forget_bounds(core::SimulatorState& machine) {
     memory.deciding.reset();
     memory.margin = 0.0;
     memory.hints = {};
+    memory.near_places = {};
     memory.cutters.clear();
     memory.turning_parts.clear();
 }

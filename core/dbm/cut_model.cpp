@@ -214,11 +214,28 @@ bool comes_to(const LoggedSweep& logged, const Square& square, const Interval& h
     return first <= last;
 }
 
+/// No point that an upright cutter sweeps over a square is lower; infinite if there is none.
+double lowest_over(const CutterSweep& sweep, const Square& square) {
+    constexpr double slack = 1e-6; // mm, far above the rounding errors of this bound
+    const double x = 0.5 * (square.x0 + square.x1) - sweep.from.x;
+    const double y = 0.5 * (square.y0 + square.y1) - sweep.from.y;
+    const double way_x = sweep.to.x - sweep.from.x, way_y = sweep.to.y - sweep.from.y;
+    const double way_2 = way_x * way_x + way_y * way_y;
+    const double t = way_2 > 0.0 ? std::clamp((x * way_x + y * way_y) / way_2, 0.0, 1.0) : 0.0;
+    const double off_x = x - t * way_x, off_y = y - t * way_y;
+    const double wide = square.x1 - square.x0, deep = square.y1 - square.y0;
+    const double apart = std::sqrt(off_x * off_x + off_y * off_y)
+                         - 0.5 * std::sqrt(wide * wide + deep * deep) - slack;
+    return std::min(sweep.from.z, sweep.to.z) + sweep.cutter->underside.beyond(apart) - slack;
+}
+
 constexpr Interval any_height{-infinity, infinity};
 
 bool comes_to(const LoggedSweep& logged, const TiltedPrism* box, const Square& square,
               const Interval& heights) {
-    return comes_to(logged, square, heights) && (!box || box->comes_to(square, heights));
+    return comes_to(logged, square, heights)
+           && (box ? box->comes_to(square, heights)
+                   : lowest_over(logged.sweep, square) <= heights.upper);
 }
 
 /// From the lowest to the highest of some intervals; empty if there are none.
@@ -316,13 +333,24 @@ SquareCuts::SquareCuts(const CutModel& model, const CellSweeps& near, const Squa
 }
 
 void SquareCuts::add(const CellSweeps& near, size_t first) {
+    struct Deep {
+        double low;
+        const NearSweep* sweep;
+    };
+    std::vector<Deep> all;
     for (size_t i = first; i < near.size(); ++i) {
-        const LoggedSweep& sweep = near[i].logged;
+        const LoggedSweep& logged = near[i].logged;
         const TiltedPrism* const box = near[i].box ? &*near[i].box : nullptr;
-        if (comes_to(sweep, box, square_, heights_))
-            for (const Cutter::Piece& piece : sweep.sweep.cutter->pieces)
-                cuts_.push_back({&sweep, box, &piece, {}, {}});
+        if (comes_to(logged, box, square_, heights_))
+            all.push_back({box ? logged.box.min.z : lowest_over(logged.sweep, square_), &near[i]});
     }
+    // The last in the list are subtracted first: the lowest ones leave little to the others.
+    std::stable_sort(all.begin(), all.end(),
+                     [](const Deep& a, const Deep& b) { return a.low > b.low; });
+    for (const Deep& one : all)
+        for (const Cutter::Piece& piece : one.sweep->logged.sweep.cutter->pieces)
+            cuts_.push_back(
+                {&one.sweep->logged, one.sweep->box ? &*one.sweep->box : nullptr, &piece, {}, {}});
 }
 
 SquareCuts SquareCuts::within(int number, const Interval& heights) const {
@@ -402,8 +430,6 @@ IntervalList SquareCuts::column(int number) {
 
 void SquareCuts::subtract_from_column(IntervalList& column, int number, size_t first) {
     const Square part = quarter(number);
-    // The last moves are the ones nearest to a tool that still cuts, and leave little to the
-    // others.
     for (size_t i = cuts_.size(); i-- > first && !column.empty();) {
         const Interval left = hull(column);
         if (!comes_to(*cuts_[i].sweep, cuts_[i].box, part, left)) continue;

@@ -74,7 +74,39 @@ void for_outer_pieces(const RevolvedProfile& convex, const Interval& distances, 
           });
 }
 
+/// No point of the piece that is `distance` or more from the axis is lower; infinite if there is
+/// none.
+double lowest_beyond(const ProfileElement& e, double distance) {
+    const double rim = std::max(e.r0, e.r1);
+    if (distance > rim + e.margin) return infinity;
+    const auto of_cone = [&](double radius) {
+        return radius <= e.r0 ? e.z0 : e.z0 + (radius - e.r0) / (e.r1 - e.r0) * (e.z1 - e.z0);
+    };
+    if (e.r1 <= e.r0 || e.z0 == e.z1) { // widest at its lowest height
+        const double off = std::max(0.0, distance - rim);
+        return e.z0 - std::sqrt(std::max(0.0, e.margin * e.margin - off * off));
+    }
+    return of_cone(std::min(rim, distance - e.margin)) - e.margin;
+}
+
 } // namespace
+
+Underside::Underside(const std::vector<ProfileElement>& elements) {
+    for (const ProfileElement& each : elements)
+        radius_ = std::max(radius_, std::max(each.r0, each.r1) + each.margin);
+    heights_.fill(infinity);
+    for (size_t i = 0; i < steps; ++i)
+        for (const ProfileElement& each : elements)
+            heights_[i] = std::min(heights_[i],
+                                   lowest_beyond(each, static_cast<double>(i) / steps * radius_));
+}
+
+double Underside::beyond(double distance) const {
+    constexpr double slack = 1e-9; // mm
+    if (distance > radius_ + slack) return infinity;
+    const double place = (distance - slack) / std::max(radius_, slack) * steps;
+    return heights_[static_cast<size_t>(std::clamp(place, 0.0, steps - 1.0))];
+}
 
 Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
     std::vector<RevolvedProfile> convex;
@@ -91,7 +123,12 @@ Cutter make_cutter(const RevolvedProfile& flutes, double path_error) {
         else
             cutter.pieces.push_back({shrunk_within(piece, path_error), grown(piece, path_error)});
     }
-    for (const Cutter::Piece& piece : cutter.pieces) cutter.body.extend(bounds(piece.around));
+    std::vector<ProfileElement> all;
+    for (const Cutter::Piece& piece : cutter.pieces) {
+        cutter.body.extend(bounds(piece.around));
+        all.insert(all.end(), piece.around.elements.begin(), piece.around.elements.end());
+    }
+    cutter.underside = Underside(all);
     return cutter;
 }
 

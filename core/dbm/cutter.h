@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -41,6 +42,21 @@ inline bool is_upright(const Mat3& stock_from_tool) {
     return stock_from_tool[2] == Vec3(0.0, 0.0, 1.0);
 }
 
+/// How low an upright body of revolution reaches at some distance from its axis: a lower bound.
+class Underside {
+public:
+    Underside() = default;
+    explicit Underside(const std::vector<ProfileElement>& elements);
+
+    /// No point that is `distance` or more from the axis is lower; infinite if there is none.
+    double beyond(double distance) const;
+
+private:
+    static constexpr size_t steps = 32;
+    double radius_ = 0.0;                 // of the body
+    std::array<double, steps> heights_{}; // beyond i / steps of the radius
+};
+
 /// The flutes of a tool prepared for cutting: convex pieces, each as a profile inside the real one
 /// and one that contains it. They differ by the error of the path.
 struct Cutter {
@@ -53,7 +69,8 @@ struct Cutter {
     RevolvedProfile flutes;  // the same, or larger where they may cut less than they look like
     double path_error = 0.0;
     std::vector<Piece> pieces;
-    Aabb body; // of everything it may cut when upright, relative to the tip
+    Aabb body;                // of everything it may cut when upright, relative to the tip
+    Underside underside = {}; // of the same
 };
 
 /// A cutter for paths within `path_error` mm of the straight moves given for them.

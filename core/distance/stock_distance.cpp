@@ -149,9 +149,12 @@ public:
             keep_promise();
         }
         if (goal_.bound == StockBound::lower) search_lines_of_nearest_cell();
-        if (goal_.bound != StockBound::upper && lower_ < goal_.threshold
-            && upper_.upper >= goal_.threshold)
-            refine_columns();
+        const auto is_open = [&] {
+            return goal_.bound != StockBound::upper && lower_ < goal_.threshold && !decided_near();
+        };
+        for (const Vec3& place : goal_.first_places)
+            if (is_open()) search_line_through(place);
+        if (is_open()) refine_columns();
         result_.separation = upper_.upper < goal_.limit ? upper_ : Separation{};
         result_.separation.lower = std::max(0.0, std::min({lower_, upper_.upper, goal_.limit}));
         return result_;
@@ -344,6 +347,29 @@ private:
         if (line_limit() < before) result_.line = id;
     }
 
+    /// The line along Z through a point, recomputed.
+    void search_line_through(const Vec3& point) {
+        const auto cell = [&](size_t axis) {
+            const std::vector<double>& corners = stock_.corners[axis];
+            const int count = axis == 0 ? stock_.columns.u_count() : stock_.columns.v_count();
+            const auto last = corners.begin() + count + 1;
+            const auto next =
+                std::upper_bound(corners.begin(), last, point[static_cast<int>(axis)]);
+            return static_cast<int>(next - corners.begin()) - 1;
+        };
+        const int i = cell(0), j = cell(1);
+        if (i < 0 || j < 0 || i >= stock_.columns.u_count() || j >= stock_.columns.v_count())
+            return;
+        offer_line(fresh_line(stock_, i, j, point.x, point.y), point.x, point.y);
+    }
+
+    /// Material on a recomputed line along Z.
+    void offer_line(const IntervalList& line, double x, double y) {
+        for (const Interval& matter : line)
+            offer_matter({{x, y, matter.lower}, {x, y, matter.upper}});
+        keep_promise();
+    }
+
     /// Material known to exist.
     void offer_matter(const Aabb& matter) {
         const double bound = box_bound(matter, line_limit());
@@ -503,9 +529,7 @@ private:
     void refine(Cuts& cuts) {
         const Square& square = cuts.square();
         const double x = 0.5 * (square.x0 + square.x1), y = 0.5 * (square.y0 + square.y1);
-        for (const Interval& matter : cuts.line_at_centre())
-            offer_matter({{x, y, matter.lower}, {x, y, matter.upper}});
-        keep_promise();
+        offer_line(cuts.line_at_centre(), x, y);
         for (int quarter = 0; quarter < 4; ++quarter) {
             ++result_.refined;
             if (result_.futile > 0) ++result_.futile;

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -40,6 +42,15 @@ ToolDescription tool(ToolShape shape) {
     return tool;
 }
 
+/// The distance of a point from the path of the tip, seen from above.
+double distance_from_path(const CutterSweep& sweep, double x, double y) {
+    const Vec3 way(sweep.to.x - sweep.from.x, sweep.to.y - sweep.from.y, 0.0);
+    const Vec3 to(x - sweep.from.x, y - sweep.from.y, 0.0);
+    const double length_2 = glm::dot(way, way);
+    const double t = length_2 > 0.0 ? std::clamp(glm::dot(to, way) / length_2, 0.0, 1.0) : 0.0;
+    return glm::length(to - t * way);
+}
+
 class EveryShapeAndPathError : public testing::TestWithParam<std::tuple<ToolShape, double>> {};
 
 /// The segment of a line is the hull of the segments of all pieces, although only those are
@@ -75,10 +86,33 @@ TEST_P(EveryShapeAndPathError, GivesTheHullOfAllPiecesOnLinesAlongZ) {
                 if (!found) continue;
                 ASSERT_NEAR(found->lower, hull.lower, 1e-9) << x << " " << y;
                 ASSERT_NEAR(found->upper, hull.upper, 1e-9) << x << " " << y;
+                const double low = std::min(sweep.from.z, sweep.to.z)
+                                   + cutter->underside.beyond(distance_from_path(sweep, x, y));
+                ASSERT_GE(found->lower, low - 1e-9) << x << " " << y;
                 ++hits;
             }
     }
     EXPECT_GT(hits, 10000);
+}
+
+TEST(Underside, IsAboutThatOfTheBody) {
+    const double r = 3.0;
+    const RevolvedProfile ball{{{r, 0, r, 0, r}, {r, r, 20, r, 0}}};
+    const RevolvedProfile bull{{{1, 2, 1, 2, 1}, {1, r, 20, r, 0}}};
+    const RevolvedProfile cone{{{0, 0, 2, r, 0}, {2, r, 20, r, 0}}};
+    for (double d = 0.0; d < 0.9 * r; d += 0.01) {
+        constexpr double step = 3.0 / 32 + 1e-6;
+        const double ball_low = r - std::sqrt(r * r - d * d);
+        const double before = std::max(0.0, d - step);
+        EXPECT_LE(make_cutter(ball, 0.0).underside.beyond(d), ball_low + 1e-9);
+        EXPECT_GE(make_cutter(ball, 0.0).underside.beyond(d),
+                  r - std::sqrt(r * r - before * before) - 1e-9);
+        const double off = std::max(0.0, d - 2.0);
+        EXPECT_LE(make_cutter(bull, 0.0).underside.beyond(d),
+                  1.0 - std::sqrt(1.0 - off * off) + 1e-9);
+        EXPECT_NEAR(make_cutter(cone, 0.0).underside.beyond(d), d / r * 2.0, 0.07);
+    }
+    EXPECT_EQ(make_cutter(ball, 0.0).underside.beyond(r + 1e-6), infinity);
 }
 
 INSTANTIATE_TEST_SUITE_P(
