@@ -225,13 +225,16 @@ private:
         const auto last = [](double v, long count) {
             return static_cast<long>(std::clamp(std::floor(v), -1.0, double(count - 1)));
         };
-        for (long row = first(y - reach, rows_); row <= last(y + reach, rows_); ++row)
-            for (long column = first(x - reach, columns_); column <= last(x + reach, columns_);
-                 ++column)
-                if (core::hypot(static_cast<double>(column) + 0.5 - x,
-                                static_cast<double>(row) + 0.5 - y)
-                    <= reach)
+        const long first_column = first(x - reach, columns_);
+        const long last_column = last(x + reach, columns_), last_row = last(y + reach, rows_);
+        for (long row = first(y - reach, rows_); row <= last_row; ++row) {
+            const double up = static_cast<double>(row) + 0.5 - y;
+            for (long column = first_column; column <= last_column; ++column) {
+                const double aside = static_cast<double>(column) + 0.5 - x;
+                if (aside * aside + up * up <= reach * reach)
                     call(static_cast<size_t>(row * columns_ + column));
+            }
+        }
     }
 
     Aabb box_;
