@@ -40,9 +40,11 @@ struct StockGoal {
 };
 
 /// Whether bounds beyond `exact_within` are so close that lines along X and Y need not be searched
-/// for a smaller upper one: within half the spacing of lines and an eighth of `lower`.
+/// for a smaller upper one: within an eighth of `lower`, and within half the spacing of lines or
+/// 3 % of `lower`.
 inline bool are_close(double lower, double upper, double exact_within, double spacing) {
-    return lower > exact_within && upper - lower <= std::min(0.5 * spacing, 0.125 * lower);
+    return lower > exact_within
+           && upper - lower <= std::min(std::max(0.5 * spacing, 0.03 * lower), 0.125 * lower);
 }
 
 /// The distance of a shape from a stock that is being cut.
