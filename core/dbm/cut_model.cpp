@@ -541,17 +541,23 @@ IntervalList fresh_column(const CutModel& model, int i, int j, const Square& squ
 }
 
 IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y) {
+    const Square point{x, x, y, y};
     IntervalList line = line_of(model.solid, 2, x, y);
-    const CellSweeps near = sweeps_near_cell(model, i, j);
-    for (size_t k = 0; k < near.size(); ++k) {
-        const LoggedSweep& one = near[k].logged;
-        if (!comes_to(one, {x, x, y, y}, any_height)) continue;
-        for (const Cutter::Piece& piece : one.sweep.cutter->pieces) {
-            if (line.empty()) return line;
+    const auto subtract = [&](size_t number) {
+        if (!overlaps(model.log.box(number), point)) return;
+        const LoggedSweep one = model.log[number];
+        const Interval left = hull(line);
+        if (!comes_to(one, point, left)) return;
+        if (is_upright(one.sweep.orientation) && lowest_over(one.sweep, point) > left.upper) return;
+        for (const Cutter::Piece& piece : one.sweep.cutter->pieces)
             if (const auto gone = line_interval(piece.around, one.sweep, 2, x, y))
                 line.subtract(*gone);
-        }
-    }
+    };
+    // The last moves are usually the lowest.
+    const SharedLog<SweepRun>& runs = model.history[model.column_boxes.index(i, j)];
+    for (size_t run = runs.size(); run-- > 0;)
+        for (size_t number = runs[run].last + size_t{1}; number-- > runs[run].first;)
+            if (!line.empty()) subtract(number);
     return line;
 }
 

@@ -62,14 +62,8 @@ CapsuleLanes upright_lanes(const CutterSweep& sweep, const ProfileElement& e) {
     CapsuleLanes c = capsule(sweep, 2, 0.0, e.r0);
     c.low_end = e.z0;
     c.high_end = e.z1;
-    c.level = c.by_a == 0.0;
-    if (c.level) {
-        c.reach_low = on_lattice(c.from_a + c.low_end);
-        c.reach_high = on_lattice(c.from_a + c.high_end);
-    } else {
-        c.reach_low += e.z0;
-        c.reach_high += e.z1;
-    }
+    c.reach_low += e.z0;
+    c.reach_high += e.z1;
     c.low_by_half = c.by_a < 0.0 ? c.per_length : -c.per_length;
     c.high_by_half = -c.low_by_half;
     if (c.length == 0.0) {
@@ -173,7 +167,6 @@ bool open_up(CapsuleLanes& c, double reached, double top) {
     if (reached < top) return false;
     c.opens_up = true;
     c.high_end = c.reach_high = reached;
-    if (c.level) c.reach_high = on_lattice(reached);
     return true;
 }
 
@@ -322,6 +315,12 @@ LanePlan lane_plan(const RevolvedProfile& convex, const CutterSweep& sweep, int 
             CapsuleLanes& c = plan.upright[plan.uprights++];
             c = upright_lanes(sweep, e);
             open_up(c, lowest + e.z1, top);
+            // Of several elements, what is between them is swept, too.
+            c.level = level && all.size() == 1;
+            if (c.level) {
+                c.reach_low = on_lattice(c.from_a + c.low_end);
+                c.reach_high = on_lattice(c.opens_up ? c.high_end : c.from_a + c.high_end);
+            }
         } else if (is_cylinder(e) && axis != 2 && plan.across < LanePlan::most) {
             plan.sideways[plan.across++] = across_lanes(sweep, axis, e);
         } else if ((level || upright || sloped)

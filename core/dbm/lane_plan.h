@@ -30,7 +30,7 @@ struct CapsuleLanes {
     bool opens_up;                // no stock above, so every segment may end at high_end
     double reach_low, reach_high; // bounds of the ball's centre or of the cylinder's ends
     double u_most, v_most;        // beyond these, another element covers this one
-    bool level; // a cylinder that does not move along the lines: its ends are exactly the reach
+    bool level; // all of a piece, which does not move along the lines: its ends are the reach
 };
 
 /// An upright cylinder crossed from the side: (a, s) is the plane of its circle, z the height.

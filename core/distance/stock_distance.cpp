@@ -152,8 +152,7 @@ public:
         const auto is_open = [&] {
             return goal_.bound != StockBound::upper && lower_ < goal_.threshold && !decided_near();
         };
-        for (const Vec3& place : goal_.first_places)
-            if (is_open()) search_line_through(place);
+        if (goal_.first_place && is_open()) search_line_through(*goal_.first_place);
         if (is_open()) refine_columns();
         result_.separation = upper_.upper < goal_.limit ? upper_ : Separation{};
         result_.separation.lower = std::max(0.0, std::min({lower_, upper_.upper, goal_.limit}));

@@ -34,9 +34,9 @@ struct StockGoal {
     size_t futile_limit = 100'000;
     KeptSquares* kept = nullptr; // of this stock, if several searches share what they recompute
     std::optional<LineId> first_line; // searched first; the last answer is a good guess
-    // Where the interval would have to be narrowed, the lines along Z through these points of the
-    // stock are recomputed first.
-    std::span<const Vec3> first_places = {};
+    // Where the interval would have to be narrowed, the line along Z through this point of the
+    // stock is recomputed first.
+    std::optional<Vec3> first_place = {};
 };
 
 /// Whether bounds beyond `exact_within` are so close that lines along X and Y need not be searched

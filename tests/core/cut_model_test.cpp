@@ -177,6 +177,23 @@ TEST(Cut, RemovesWhatASampleSaysAndNothingTheSecondTime) {
     EXPECT_GT(cutting, 12);
 }
 
+TEST(CutModel, LosesWhatIsBetweenTwoElementsOfACutter) {
+    const auto cutter = [](const RevolvedProfile& flutes, double path_error) {
+        return std::make_shared<const Cutter>(make_cutter(flutes, path_error));
+    };
+    CutModel model = make_cut_model({SolidBox{{{0, 0, 1}, {20, 20, 9}}}, 0.0}, 0.5).value();
+    // A sheet is left where the two elements of the second cutter, made slimmer, do not meet.
+    const RevolvedProfile below{{{0, 3, 4.9997, 3, 0}}}, above{{{5.0003, 3, 20, 3, 0}}};
+    for (const RevolvedProfile& flutes : {below, above})
+        cut(model, {cutter(flutes, 0.0), {-5, 10, 0}, {25, 10, 0}});
+    const ScanLines& columns = model.columns;
+    ASSERT_EQ(columns.line(20, 20).size(), 1u);
+    const RevolvedProfile stacked{{{0, 3, 5, 3, 0}, {5, 3, 12, 3, 0}}};
+    cut(model, {cutter(stacked, 4e-4), {-5, 10, 0}, {25, 10, 0}});
+    EXPECT_TRUE(columns.line(20, 20).empty());
+    EXPECT_TRUE(model.lines.families[2].line(20, 20).empty());
+}
+
 TEST(CutModel, DoesNotDependOnTheOrderOfCuts) {
     std::mt19937 rng(66);
     for (int i = 0; i < 12; ++i) {

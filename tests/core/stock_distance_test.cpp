@@ -342,27 +342,27 @@ TEST(StockDistance, SeesAWallThinnerThanTheMeshSize) {
     }
 }
 
-TEST(StockDistance, RecomputesTheLinesAtTheGivenPlacesFirst) {
+TEST(StockDistance, RecomputesTheLineAtTheGivenPlaceFirst) {
     const CutBox world = thin_wall(0.05);
     const CutModel model = world.model(0.5);
     // A ball that overlaps the wall, which no scan line shows.
     const Shapes ball = {posed(convex_sphere(1.0), translation({2, 1.1, -4}))};
-    const std::vector<Vec3> places = {{2, -3, 0}, {300, 0, 0}, {2, 0.13, 5}};
-    const StockGoal alone{.threshold = 1e-6};
-    StockGoal told = alone;
-    told.first_places = places;
-    const StockSeparation found = separation(ball, model, alone);
-    const StockSeparation sooner = separation(ball, model, told);
+    StockGoal goal{.threshold = 1e-6};
+    const StockSeparation found = separation(ball, model, goal);
     EXPECT_EQ(found.separation.upper, 0.0);
     EXPECT_GT(found.refined, 0u);
+    goal.first_place = Vec3(2, 0.13, 5);
+    const StockSeparation sooner = separation(ball, model, goal);
     EXPECT_EQ(sooner.separation.upper, 0.0);
     EXPECT_EQ(sooner.refined, 0u);
-    // Places that are empty or away change nothing.
-    told.first_places = std::span(places).first(2);
-    const StockSeparation again = separation(ball, model, told);
-    EXPECT_EQ(again.refined, found.refined);
-    EXPECT_EQ(again.separation.lower, found.separation.lower);
-    EXPECT_EQ(again.separation.upper, found.separation.upper);
+    // A place that is empty, or beside the stock, changes nothing.
+    for (const Vec3& place : {Vec3(2, -3, 0), Vec3(300, 0, 0)}) {
+        goal.first_place = place;
+        const StockSeparation again = separation(ball, model, goal);
+        EXPECT_EQ(again.refined, found.refined);
+        EXPECT_EQ(again.separation.lower, found.separation.lower);
+        EXPECT_EQ(again.separation.upper, found.separation.upper);
+    }
 }
 
 TEST(StockDistance, FindsAnOverlapBesideAContact) {

@@ -28,9 +28,9 @@ struct PairBound {
     double drift = 0.0; // travel since the pair was measured, mm
 };
 
-/// State of a check that is carried from leg to leg. All but `cuts` and `passages` only saves time.
-/// No verdict depends on it, except that a search that would end undecided may be decided by
-/// `near_places`.
+/// State of a check that is carried from leg to leg. All but `cuts` and `passages` only saves time,
+/// and no verdict depends on it, with one exception: with `near_places`, a search may find an
+/// overlap that it would miss alone, or another one, at another moment of the leg.
 struct CheckMemory {
     /// Cutting brings nothing nearer, and a motion brings a pair nearer by at most its length, so
     /// bounds hold from block to block until a tool or a fixture is changed. In order: is_before.
@@ -43,10 +43,9 @@ struct CheckMemory {
     /// Scan line that was nearest to each kind of body in the last search; the next search starts
     /// there.
     std::array<std::optional<LineId>, 5> hints;
-    /// Where material was too near to a body of each kind, from where the body was at the end of
-    /// that leg, the latest first: on the next leg it often is there again.
-    static constexpr size_t most_places = 6;
-    std::array<std::vector<Vec3>, 5> near_places;
+    /// Where material was last too near to a body of each kind, from where the body was at the end
+    /// of that leg: on the next leg it often is there again.
+    std::array<std::optional<Vec3>, 5> near_places;
     /// A tool with the spindle as it is, or stopped in its orientation: a boring bar has other
     /// flutes then.
     using ToolState = std::pair<ToolNumber, bool>;

@@ -46,10 +46,8 @@ Separation StockProbe::to_stock(const MovingBody& body, const BodyLeg& leg, cons
     const std::vector<ConvexShape> shapes = shapes_of(body, leg, shrink);
     std::optional<LineId>& hint = context_.memory.hints[static_cast<size_t>(body.kind)];
     goal.first_line = hint;
-    std::vector<Vec3>& places = context_.memory.near_places[static_cast<size_t>(body.kind)];
-    std::vector<Vec3> here;
-    for (const Vec3& place : places) here.push_back(leg.positions.back() + place);
-    goal.first_places = here;
+    std::optional<Vec3>& place = context_.memory.near_places[static_cast<size_t>(body.kind)];
+    if (place) goal.first_place = leg.positions.back() + *place;
     const Allowance allowance = allowance_of(context_.setup, pair_of(body));
     goal.exact_within = exact_within(allowance);
     goal.threshold = std::min(goal.threshold, goal.limit);
@@ -59,10 +57,10 @@ Separation StockProbe::to_stock(const MovingBody& body, const BodyLeg& leg, cons
     const StockSeparation found = separation(shapes, stock, goal);
     futile_left -= std::min(futile_left, found.futile);
     if (found.line) hint = found.line;
-    if (found.separation.upper < goal.threshold && found.refined > 0) {
-        places.insert(places.begin(), found.separation.point_b - leg.positions.back());
-        if (places.size() > CheckMemory::most_places) places.pop_back();
-    }
+    if (found.separation.upper < goal.threshold)
+        place = found.separation.point_b - leg.positions.back();
+    else if (found.refined > 0)
+        place.reset();
     context_.statistics.box_tests += found.box_tests;
     context_.statistics.shape_tests += found.shape_tests;
     context_.statistics.refined += found.refined;
