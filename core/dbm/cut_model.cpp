@@ -546,9 +546,9 @@ IntervalList fresh_line(const CutModel& model, int i, int j, double x, double y)
     const auto subtract = [&](size_t number) {
         if (!overlaps(model.log.box(number), point)) return;
         const LoggedSweep one = model.log[number];
-        const Interval left = hull(line);
-        if (!comes_to(one, point, left)) return;
-        if (is_upright(one.sweep.orientation) && lowest_over(one.sweep, point) > left.upper) return;
+        std::optional<TiltedPrism> box;
+        if (!is_upright(one.sweep.orientation)) box.emplace(one.sweep);
+        if (!comes_to(one, box ? &*box : nullptr, point, hull(line))) return;
         for (const Cutter::Piece& piece : one.sweep.cutter->pieces)
             if (const auto gone = line_interval(piece.around, one.sweep, 2, x, y))
                 line.subtract(*gone);
