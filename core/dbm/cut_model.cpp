@@ -9,22 +9,29 @@ uint32_t SweepLog::last_mark() const {
     return marks_.back().mark + static_cast<uint32_t>(entries_.size()) - 1 - marks_.back().first;
 }
 
-size_t SweepLog::index_of(uint32_t mark) const {
-    size_t from = 0, to = marks_.size(); // the last run that begins at or before `mark`
+namespace {
+
+/// The last run of a list that passes a test; the first ones pass it, the others do not.
+template <typename Runs, typename Test>
+const auto& last_run(const Runs& runs, const Test& passes) {
+    size_t from = 0, to = runs.size();
     while (to - from > 1) {
         const size_t middle = from + (to - from) / 2;
-        (marks_[middle].mark <= mark ? from : to) = middle;
+        (passes(runs[middle]) ? from : to) = middle;
     }
-    return marks_[from].first + (mark - marks_[from].mark);
+    return runs[from];
+}
+
+} // namespace
+
+size_t SweepLog::index_of(uint32_t mark) const {
+    const MarkRun& run = last_run(marks_, [&](const MarkRun& one) { return one.mark <= mark; });
+    return run.first + (mark - run.mark);
 }
 
 uint32_t SweepLog::mark(size_t i) const {
-    size_t from = 0, to = marks_.size(); // the last run that begins at or before `i`
-    while (to - from > 1) {
-        const size_t middle = from + (to - from) / 2;
-        (marks_[middle].first <= i ? from : to) = middle;
-    }
-    return marks_[from].mark + static_cast<uint32_t>(i) - marks_[from].first;
+    const MarkRun& run = last_run(marks_, [&](const MarkRun& one) { return one.first <= i; });
+    return run.mark + static_cast<uint32_t>(i) - run.first;
 }
 
 void SweepLog::push_back(const CutterSweep& sweep, uint32_t mark) {
